@@ -1,0 +1,49 @@
+#pragma once
+// A team of threads that stays alive between loops. Work is a range of fixed chunks; which thread takes which
+// chunk never changes a result, because chunks write to their own places and sums are made in chunk order.
+#include <atomic>
+#include <functional>
+#include <thread>
+#include <vector>
+
+namespace fabrica {
+
+class Team {
+ public:
+  explicit Team(int threads);
+  ~Team();
+  Team(const Team&) = delete;
+  Team& operator=(const Team&) = delete;
+  int size() const { return size_; }
+
+  // calls fn(chunk, thread) for every chunk in [0, chunks); returns when all are done
+  template <class Fn>
+  void for_each(int chunks, Fn&& fn) {
+    if (size_ == 1 || chunks <= 1) {
+      for (int i = 0; i < chunks; ++i) fn(i, 0);
+      return;
+    }
+    struct Call {
+      static void run(void* f, int chunk, int thread) { (*static_cast<std::remove_reference_t<Fn>*>(f))(chunk, thread); }
+    };
+    start(chunks, &Call::run, const_cast<void*>(static_cast<const void*>(&fn)));
+  }
+
+ private:
+  using Function = void (*)(void*, int, int);
+  void start(int chunks, Function function, void* data);
+  void work(int thread);
+  void worker(int thread);
+
+  int size_;
+  std::vector<std::thread> threads_;
+  alignas(64) std::atomic<unsigned> epoch_{0};
+  alignas(64) std::atomic<int> next_{0};
+  alignas(64) std::atomic<int> busy_{0};
+  std::atomic<bool> stop_{false};
+  int chunks_ = 0;
+  Function function_ = nullptr;
+  void* data_ = nullptr;
+};
+
+}  // namespace fabrica

@@ -1,0 +1,36 @@
+#pragma once
+// Isotropic linear elasticity in rate form (*MAT_ELASTIC).
+//   ds/dt = 2 G dev(D),   dp/dt = -K tr(D)                                   (1)
+// s deviatoric stress, p pressure, D rate of deformation, G shear modulus, K bulk modulus. The element supplies the
+// objective (Jaumann) part. Source: any text on hypoelasticity, e.g. Belytschko, Liu, Moran, ch. 5.
+#include "material/point.h"
+
+namespace fabrica {
+
+struct ElasticLaw {
+  static constexpr std::string_view keyword = "MAT_ELASTIC";
+  static constexpr unsigned families = in_solids | in_shells | in_beams;
+  static constexpr bool total = false, can_fail = false;
+  static constexpr int rotated = 0;
+
+  Real density;  // [mass/length^3]
+  Real bulk;     // K [stress]
+  Real shear;    // G [stress]
+
+  template <class L>
+  struct State {};
+
+  static ElasticLaw from(const Parameters& p) {
+    const Elastic e = Elastic::from_youngs(p.real("ro"), p.real("e"), p.real("pr"));
+    return {Real(e.density), Real(e.bulk), Real(e.shear)};
+  }
+  Elastic elastic() const { return {density, bulk, shear}; }
+
+  template <class L>
+  FABRICA_FN Sym3<L> stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>&, State<L>&) const {
+    const L volumetric = trace(strain) * L(bulk - Real(2.0 / 3.0) * shear);
+    return plus_sphere(old + L(2 * shear) * strain, volumetric);
+  }
+};
+
+}  // namespace fabrica
