@@ -50,6 +50,12 @@ struct Hex8 {
     start_point<L, M>({s.block + point_at<M>(p) * block_size});
   }
 
+  static void lump(const ElementParameters& p, const Corners<double, 8>& c, const Given<double>&, double (&mass)[8],
+                   double (&)[8]) {
+    const double m = double(p.density) * hex_gradient<true>(c.x).volume / 8;
+    for (double& corner : mass) corner = m;
+  }
+
   template <class L, class M>
   FABRICA_FN static void forces(const M& material, const ElementParameters& p, Real dt_previous, const Corners<L, 8>& c,
                                 StateView<L> s, CornerForces<L, 8>& out, Totals<L>& totals) {

@@ -68,6 +68,12 @@ struct Tet4 {
     start_point<L, M>({s.block + point_field<M> * block_size});
   }
 
+  static void lump(const ElementParameters& p, const Corners<double, 4>& c, const Given<double>&, double (&mass)[4],
+                   double (&)[4]) {
+    const double m = double(p.density) * TetGradient<double>(c.x).volume() / 4;
+    for (double& corner : mass) corner = m;
+  }
+
   template <class L, class M>
   FABRICA_FN static void forces(const M& material, const ElementParameters& p, Real dt_previous, const Corners<L, 4>& c,
                                 StateView<L> s, CornerForces<L, 4>& out, Totals<L>& totals) {

@@ -1,0 +1,114 @@
+#pragma once
+// A run: the model, its state and the passes of one step in the order of the physics (docs/step.md).
+#include <functional>
+#include <iosfwd>
+#include <memory>
+#include <string>
+
+#include "base/team.h"
+#include "model/model.h"
+#include "model/state.h"
+#include "solver/contact.h"
+#include "solver/damping.h"
+#include "solver/discrete_elements.h"
+#include "solver/initial_conditions.h"
+#include "solver/joints.h"
+#include "solver/loads.h"
+#include "solver/mass_scaling.h"
+#include "solver/node_constraints.h"
+#include "solver/rigid_bodies.h"
+#include "solver/rigid_walls.h"
+#include "solver/tiles.h"
+
+namespace fabrica {
+
+struct RunOptions {
+  int threads = 1;
+  double end_time = 0;     // 0: the deck's
+  bool energy_audit = false;
+};
+
+// why a run ended
+enum class Ending { running, end_time, end_cycle, signal, time_step_too_small, negative_volume, not_a_number };
+
+// who sets the time step
+struct TimeStepOwner {
+  std::string family;  // "solid", "shell", "beam", "discrete", "contact", "limit"
+  std::int64_t element = 0, part = 0;
+  double step = 0;
+};
+
+class Simulation {
+ public:
+  // Sets the run up to t = 0; the model must be free of errors. Problems go to diagnostics.
+  Simulation(const Model& model, const RunOptions& options, Diagnostics& diagnostics);
+
+  // Advances one step. After it, x is at t(n+1), v at t(n+1/2) and forces belong to t(n).
+  void step();
+  // Brings kinetic energy and other sums up to date; cheap enough for every output, not for every step.
+  void update_energies();
+
+  const Model& model() const { return model_; }
+  const State& state() const { return state_; }
+  Ending ending() const { return ending_; }
+  std::string ending_text() const { return ending_text_; }
+  double end_time() const { return end_time_; }
+  TimeStepOwner time_step_owner() const;
+  int elements() const { return tiles_.elements(); }
+  double added_mass() const { return mass_scaling_.added_mass(); }
+  double physical_mass() const { return physical_mass_; }
+  // a hash of position and velocity of every node
+  std::uint64_t state_hash() const;
+
+  void save(const std::string& path) const;
+  void load(const std::string& path);
+
+  // parts of the run, for output
+  Team& team() { return team_; }
+  const Tiles& tiles() const { return tiles_; }
+  const Contacts& contacts() const { return contacts_; }
+  const RigidBodies& rigid_bodies() const { return rigid_bodies_; }
+  const Joints& joints() const { return joints_; }
+  const RigidWalls& rigid_walls() const { return rigid_walls_; }
+  const NodeConstraints& node_constraints() const { return node_constraints_; }
+  const DiscreteElements& discrete_elements() const { return discrete_elements_; }
+  const std::vector<double>& part_internal() const { return part_internal_; }
+  const std::vector<double>& part_hourglass() const { return part_hourglass_; }
+  // acceleration of a node at t(n), before constraints moved it
+  Vec3d acceleration(int node) const;
+
+ private:
+  void element_forces();
+  void contact_forces();
+  void external_forces();
+  void assemble();
+  void constrain();
+  void accelerate();
+  void advance_nodes();
+  void account_energy();
+  void choose_time_step();
+  void check_health();
+  void set_up_masses(Diagnostics& diagnostics);
+  ContactInput contact_input() const;
+
+  const Model& model_;
+  Team team_;
+  State state_;
+  Tiles tiles_;
+  MassScaling mass_scaling_;
+  RigidBodies rigid_bodies_;
+  Joints joints_;
+  NodeConstraints node_constraints_;
+  RigidWalls rigid_walls_;
+  Loads loads_;
+  DampingForces damping_;
+  DiscreteElements discrete_elements_;
+  Contacts contacts_;
+  std::vector<double> part_internal_, part_hourglass_;
+  std::vector<Vec3d> velocity_before_;  // of nodes with special treatment
+  double end_time_ = 0, physical_mass_ = 0, initial_step_ = 0;
+  Ending ending_ = Ending::running;
+  std::string ending_text_;
+};
+
+}  // namespace fabrica
