@@ -31,6 +31,17 @@ struct ElasticLaw {
     const L volumetric = trace(strain) * L(bulk - Real(2.0 / 3.0) * shear);
     return plus_sphere(old + L(2 * shear) * strain, volumetric);
   }
+
+  // Plane stress: s_zz = 0 gives e_zz = -nu/(1-nu) (e_xx + e_yy); strain.zz is not read.
+  template <class L>
+  FABRICA_FN Sym3<L> plane_stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>&, State<L>&, L& dzz) const {
+    const Real lame = bulk - Real(2.0 / 3.0) * shear, ratio = lame / (lame + 2 * shear);
+    const L plane = strain.xx + strain.yy, twice = L(2 * shear);
+    dzz = L(-ratio) * plane;
+    const L both = L(2 * shear * ratio) * plane;
+    return {old.xx + fma(twice, strain.xx, both), old.yy + fma(twice, strain.yy, both), L(0.0),
+            fma(twice, strain.xy, old.xy),        fma(twice, strain.yz, old.yz),        fma(twice, strain.zx, old.zx)};
+  }
 };
 
 }  // namespace fabrica

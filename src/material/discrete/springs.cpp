@@ -1,0 +1,174 @@
+#include "material/discrete/springs.h"
+
+#include <cmath>
+
+namespace fabrica {
+
+SpringForce ElastoplasticSpring::force(const SpringMotion& m, SpringState& s) const {
+  const double trial = k * (m.d - s.plastic);
+  const double hardening = kt < k ? k * kt / (k - kt) : 0.0;
+  const double over = std::fabs(trial) - (fy + hardening * s.amount);
+  if (over <= 0 || fy <= 0) return {trial, k, 0};
+  // return to the yield force: it grows by H da while the trial force falls by K da
+  const double da = over / (k + hardening);
+  s.amount += da;
+  s.plastic += trial > 0 ? da : -da;
+  return {k * (m.d - s.plastic), k, 0};
+}
+
+NonlinearSpring NonlinearSpring::from(const Parameters& p) {
+  NonlinearSpring law;
+  law.deflection = Polyline(p.curve("lcd"));
+  law.rate_factor = Polyline(p.curve("lcr"));
+  if (law.deflection) return law;
+  const TableView t = p.table("lcd");
+  law.log_rate = t.log_rate;
+  for (int i = 0; i < t.n; ++i) {
+    law.rates.push_back(t.rate[i]);
+    law.family.emplace_back(t.curves[i]);
+  }
+  return law;
+}
+
+SpringForce NonlinearSpring::force(const SpringMotion& m, SpringState&) const {
+  if (!family.empty()) return from_family(m);
+  double slope = 0, factor_slope = 0;
+  const double f = deflection.at(m.d, slope);
+  const double factor = rate_factor ? rate_factor.at(m.rate, factor_slope) : 1.0;
+  return {f * factor, std::max(slope * factor, 0.0), std::max(f * factor_slope, 0.0)};
+}
+
+SpringForce NonlinearSpring::from_family(const SpringMotion& m) const {
+  const double r = log_rate ? std::log(std::max(std::fabs(m.rate), 1e-300)) : m.rate;
+  const auto above = std::upper_bound(rates.begin(), rates.end(), r);
+  double slope = 0, slope2 = 0;
+  if (above == rates.begin() || above == rates.end()) {
+    const double f = (above == rates.begin() ? family.front() : family.back()).at(m.d, slope);
+    return {f, std::max(slope, 0.0), 0};
+  }
+  const std::size_t i = std::size_t(above - rates.begin()) - 1;
+  const double w = (r - rates[i]) / (rates[i + 1] - rates[i]);
+  const double a = family[i].at(m.d, slope), b = family[i + 1].at(m.d, slope2);
+  const double dr = (b - a) / (rates[i + 1] - rates[i]);
+  const double damping = log_rate ? dr / std::max(std::fabs(m.rate), 1e-300) : dr;
+  return {a + w * (b - a), std::max(slope + w * (slope2 - slope), 0.0), std::max(damping, 0.0)};
+}
+
+GeneralSpring GeneralSpring::from(const Parameters& p) {
+  GeneralSpring law{Polyline(p.curve("lcdl")), Polyline(p.curve("lcdu")), p.real("beta"),
+                    p.real("tyi"), p.real("cyi")};
+  // without an unloading curve the spring unloads with the steepest slope of the loading curve
+  if (!law.unloading) law.unloading = Polyline::line(law.loading.steepest());
+  return law;
+}
+
+void GeneralSpring::move_window(int side, double force, SpringState& s) const {
+  double& edge = side > 0 ? s.high : s.low;
+  double& other = side > 0 ? s.low : s.high;
+  const double change = force - (side > 0 ? high(s) : low(s));
+  edge += change;
+  if (beta == 1) other -= change;
+  if (beta != 0 && beta != 1) other += change;
+}
+
+// On the loading curve at the given side of the window.
+SpringForce GeneralSpring::yield(int side, double d, SpringState& s) const {
+  SpringForce r;
+  r.force = loading.at(d - s.plastic, r.stiffness);
+  // only BETA = 0 lets the force fall below the edge
+  const double edge = side > 0 ? high(s) : low(s);
+  if (beta != 0 && side * (r.force - edge) < 0) r.force = edge;
+  move_window(side, r.force, s);
+  s.yielded = side;
+  // where an unloading from here would run
+  s.shift = d - unloading.inverse(r.force);
+  r.stiffness = std::max({r.stiffness, unloading.steepest(), 0.0});
+  return r;
+}
+
+SpringForce GeneralSpring::force(const SpringMotion& m, SpringState& s) const {
+  const double step = m.d - s.last;
+  s.last = m.d;
+  SpringForce r;
+  if (s.yielded == 0) {
+    r.force = loading.at(m.d, r.stiffness);
+    const int side = r.force > high(s) ? 1 : r.force < low(s) ? -1 : 0;
+    r.stiffness = std::max(r.stiffness, 0.0);
+    return side == 0 ? r : yield(side, m.d, s);
+  }
+  // still loading on the side that yields
+  if (std::fabs(s.yielded) == 1 && s.yielded * step >= 0) return yield(int(s.yielded), m.d, s);
+  // elastic path inside the window
+  s.yielded = 2;
+  r.force = unloading.at(m.d - s.shift, r.stiffness);
+  r.stiffness = std::max(r.stiffness, 0.0);
+  const int side = r.force > high(s) ? 1 : r.force < low(s) ? -1 : 0;
+  if (side == 0) return r;
+  // shift the loading curve to the point where the path meets the edge of the window
+  const double edge = side > 0 ? high(s) : low(s);
+  s.plastic = s.shift + unloading.inverse(edge) - loading.inverse(edge);
+  return yield(side, m.d, s);
+}
+
+MaxwellSpring MaxwellSpring::from(const Parameters& p) {
+  // a blank cut-off time means none
+  const double tc = p.real("tc");
+  return {p.real("k0"), p.real("ki"), p.real("beta"), tc > 0 ? tc : 1e20, p.real("fc")};
+}
+
+SpringForce MaxwellSpring::force(const SpringMotion& m, SpringState& s) const {
+  const double change = m.d - s.last;
+  s.last = m.d;
+  if (m.time >= tc) return {fc, 0, 0};
+  // exact for an elongation that is linear within the step
+  const double z = beta * m.dt;
+  const double fade = z > 0 ? -std::expm1(-z) / z : 1.0;
+  s.viscous = std::exp(-z) * s.viscous + (k0 - ki) * fade * change;
+  return {ki * m.d + s.viscous, std::max(k0, ki), 0};
+}
+
+InelasticSpring InelasticSpring::from(const Parameters& p) {
+  InelasticSpring law{Polyline(p.curve("lcfd")), p.real("ku"), p.real("ctf") < 0 ? 1 : -1};
+  law.unloading = std::max(law.unloading, law.curve.steepest());
+  return law;
+}
+
+SpringForce InelasticSpring::force(const SpringMotion& m, SpringState& s) const {
+  const double x = side * m.d;
+  SpringForce r;
+  if (x >= s.plastic && x > 0) {
+    s.plastic = x;
+    r.force = curve.at(x, r.stiffness);
+  } else if (s.plastic > 0) {
+    r.force = std::max(0.0, curve.at(s.plastic) - unloading * (s.plastic - x));
+  }
+  r.stiffness = r.force > 0 ? unloading : std::max(r.stiffness, 0.0);
+  r.force *= side;
+  return r;
+}
+
+namespace {
+template <class Law>
+bool try_law(std::string_view keyword, const Parameters& p, std::optional<SpringLaw>& found) {
+  if (keyword != Law::keyword) return false;
+  found = Law::from(p);
+  return true;
+}
+template <class... Laws>
+std::optional<SpringLaw> first_of(std::string_view keyword, const Parameters& p,
+                                  std::variant<Laws...>*) {
+  std::optional<SpringLaw> found;
+  (try_law<Laws>(keyword, p, found) || ...);
+  return found;
+}
+}  // namespace
+
+std::optional<SpringLaw> spring_law(std::string_view keyword, const Parameters& parameters) {
+  return first_of(keyword, parameters, static_cast<SpringLaw*>(nullptr));
+}
+
+SpringForce spring_force(const SpringLaw& law, const SpringMotion& motion, SpringState& state) {
+  return std::visit([&](const auto& l) { return l.force(motion, state); }, law);
+}
+
+}  // namespace fabrica

@@ -1,0 +1,172 @@
+#pragma once
+// Return mapping of von Mises plasticity with isotropic and linear kinematic hardening, in three dimensions and
+// in plane stress (transverse shear takes part in the yield function).
+//   xi = s - a,   q^2 = 3/2 dev(xi):dev(xi),   q <= Y(ep + dep),   dep = 2/3 lambda q                       (1)
+//   d(plastic strain) = lambda dev(xi),   da = 2/3 Hk lambda dev(xi)
+//   q(lambda)^2 = A / (1 + ca lambda)^2 + B / (1 + cb lambda)^2,   cb = 2G + 2/3 Hk                         (2)
+//   three dimensions: A = 0, B = q_trial^2
+//   plane stress:     A = (xx+yy)^2/4, B = 3/4 (yy-xx)^2 + 3 (xy^2+yz^2+zx^2), ca = E/(3(1-nu)) + 2/3 Hk
+// xi of plane stress is s - (a - a_zz I), so that its zz part vanishes.
+// Source: Simo and Taylor, Int. J. Num. Meth. Eng. 22 (1986); Simo and Hughes, Computational Inelasticity, ch. 3.
+#include "material/lookup.h"
+#include "material/point.h"
+
+namespace fabrica {
+
+struct J2Moduli {
+  Real bulk, shear, kinematic;  // K, G, Hk
+  Real youngs() const { return 9 * bulk * shear / (3 * bulk + shear); }
+  Real poisson() const { return (3 * bulk - 2 * shear) / (2 * (3 * bulk + shear)); }
+};
+
+// q(lambda) of equation (2)
+template <class L>
+struct J2Modes {
+  L A, B, ca, cb;
+
+  template <bool plane>
+  FABRICA_FN L q(const L& lambda, L& slope) const {
+    const L b = L(1.0) / fma(cb, lambda, L(1.0));
+    L square = B * b * b, fall = square * b * cb;
+    if constexpr (plane) {
+      const L a = L(1.0) / fma(ca, lambda, L(1.0));
+      const L part = A * a * a;
+      square += part;
+      fall = fma(part * a, ca, fall);
+    }
+    const L q = sqrt(square);
+    slope = -(fall / max(q, L(1e-30)));
+    return q;
+  }
+};
+
+// lambda of the yield condition q = Y(dep) where the yield stress depends on the plastic increment through
+// yield(dep, slope): Newton on Y/q - 1, which is nearly linear in lambda. Trial states inside the yield surface
+// give 0.
+template <bool plane, int passes, class L, class Yield>
+FABRICA_FN L j2_newton(const J2Modes<L>& modes, const Yield& yield) {
+  L lambda = L(0.0);
+  for (int i = 0; i < passes; ++i) {
+    L fall = L(0.0), hardening = L(0.0);
+    const L q = modes.template q<plane>(lambda, fall);
+    const L Y = yield(L(2.0 / 3.0) * lambda * q, hardening);
+    const L slope = fma(L(2.0 / 3.0) * hardening * q, fma(lambda, fall, q), -(Y * fall));
+    lambda = max(lambda + (q - Y) * q / max(slope, L(1e-30)), L(0.0));
+  }
+  return lambda;
+}
+
+// The same where the slope of the yield stress is unbounded at small rates: regula falsi (Illinois) on
+// lambda = bound x^4, 0 <= x <= 1; bound follows from the static yield stress, the least that Y can be.
+template <bool plane, int passes, class L, class Yield>
+FABRICA_FN L j2_bracket(const J2Modes<L>& modes, const L& q_trial, const L& static_yield, const Yield& yield) {
+  const L least = plane ? min(modes.ca, modes.cb) : modes.cb;
+  const L bound = max(q_trial / max(static_yield, L(1e-6) * q_trial + L(1e-30)) - L(1.0), L(0.0)) / least;
+  auto residual = [&](const L& x) {
+    L fall = L(0.0), hardening = L(0.0);
+    const L square = x * x, lambda = bound * square * square;
+    const L q = modes.template q<plane>(lambda, fall);
+    return q - yield(L(2.0 / 3.0) * lambda * q, hardening);
+  };
+  L low = L(0.0), high = L(1.0), x = L(1.0);
+  L at_low = q_trial - static_yield, at_high = residual(high);
+  for (int i = 0; i < passes; ++i) {
+    x = clamp(high - at_high * (high - low) / min(at_high - at_low, L(-1e-30)), low, high);
+    const L at = residual(x);
+    const auto positive = at > L(0.0);
+    // the end that stays twice is weighted down, or the secant creeps
+    const L kept_high = select(positive, L(0.5) * at_high, at), kept_low = select(positive, at, L(0.5) * at_low);
+    low = select(positive, x, low), high = select(positive, high, x);
+    at_low = kept_low, at_high = kept_high;
+  }
+  const L square = x * x;
+  return select(q_trial > static_yield, bound * square * square, L(0.0));
+}
+
+// Elastic trial in three dimensions: the whole stress and the trial xi with its modes.
+template <class L>
+struct J2Trial {
+  Sym3<L> stress, xi;
+  J2Modes<L> modes;
+  L q;
+};
+
+template <class L>
+FABRICA_FN J2Trial<L> j2_trial(const J2Moduli& m, const Sym3<L>& old, const Sym3<L>& strain, const Sym3<L>& back) {
+  J2Trial<L> t;
+  const L volumetric = trace(strain) * L(m.bulk - Real(2.0 / 3.0) * m.shear);
+  t.stress = plus_sphere(old + L(2 * m.shear) * strain, volumetric);
+  t.xi = deviator(t.stress) - back;
+  const L square = L(1.5) * ddot(t.xi, t.xi);
+  t.q = sqrt(square);
+  t.modes = {L(0.0), square, L(0.0), L(2 * m.shear + Real(2.0 / 3.0) * m.kinematic)};
+  return t;
+}
+
+// Stress after the flow lambda; moves the back stress and returns dep in `increment`.
+template <class L>
+FABRICA_FN Sym3<L> j2_finish(const J2Moduli& m, const J2Trial<L>& t, const L& lambda, Sym3<L>* back, L& increment) {
+  const L scale = L(1.0) / fma(t.modes.cb, lambda, L(1.0));
+  const L flow = lambda * scale;
+  increment = L(2.0 / 3.0) * flow * t.q;
+  if (back) *back += (L(Real(2.0 / 3.0) * m.kinematic) * flow) * t.xi;
+  return t.stress - (L(2 * m.shear) * flow) * t.xi;
+}
+
+// strain:strain of flow in plane stress, where the thickness strain is that of constant volume
+template <class L>
+FABRICA_FN L plane_flow_square(const Sym3<L>& strain) {
+  Sym3<L> d = strain;
+  d.zz = -(d.xx + d.yy);
+  return ddot(d, d);
+}
+
+// Elastic trial in plane stress; strain.zz is not read.
+template <class L>
+FABRICA_FN J2Trial<L> j2_plane_trial(const J2Moduli& m, const Sym3<L>& old, const Sym3<L>& strain,
+                                     const Sym3<L>& back) {
+  const Real E = m.youngs(), nu = m.poisson(), c = E / (1 - nu * nu);
+  const L direct = L(c), cross = L(nu * c), twice = L(2 * m.shear);
+  J2Trial<L> t;
+  t.stress.xx = fma(direct, strain.xx, fma(cross, strain.yy, old.xx));
+  t.stress.yy = fma(direct, strain.yy, fma(cross, strain.xx, old.yy));
+  t.stress.zz = L(0.0);
+  t.stress.xy = fma(twice, strain.xy, old.xy);
+  t.stress.yz = fma(twice, strain.yz, old.yz);
+  t.stress.zx = fma(twice, strain.zx, old.zx);
+  t.xi = plus_sphere(t.stress - back, back.zz);
+  const L sum = t.xi.xx + t.xi.yy, difference = t.xi.yy - t.xi.xx;
+  const L shear = fma(t.xi.xy, t.xi.xy, fma(t.xi.yz, t.xi.yz, t.xi.zx * t.xi.zx));
+  const Real hardening = Real(2.0 / 3.0) * m.kinematic;
+  t.modes = {L(0.25) * sum * sum, fma(L(0.75), difference * difference, L(3.0) * shear),
+             L(E / (3 * (1 - nu)) + hardening), L(2 * m.shear + hardening)};
+  t.q = sqrt(t.modes.A + t.modes.B);
+  return t;
+}
+
+// Plane stress after the flow lambda; dzz is the thickness strain increment, elastic and plastic.
+template <class L>
+FABRICA_FN Sym3<L> j2_plane_finish(const J2Moduli& m, const Sym3<L>& old, const J2Trial<L>& t, const L& lambda,
+                                   Sym3<L>* back, L& increment, L& dzz) {
+  const L a = L(1.0) / fma(t.modes.ca, lambda, L(1.0)), b = L(1.0) / fma(t.modes.cb, lambda, L(1.0));
+  const L sum = a * (t.xi.xx + t.xi.yy), difference = b * (t.xi.yy - t.xi.xx);
+  const L half = L(0.5);
+  const Sym3<L> xi{half * (sum - difference), half * (sum + difference), L(0.0), b * t.xi.xy, b * t.xi.yz, b * t.xi.zx};
+  const L third = sum * L(1.0 / 3.0);
+  const Sym3<L> flow = lambda * plus_sphere(xi, -third);
+  increment = L(2.0 / 3.0) * lambda * sqrt(fma(t.modes.A * a, a, t.modes.B * b * b));
+  // stress = trial - C : flow, in the plane; the elastic lanes keep their trial stress to the bit
+  const Real E = m.youngs(), nu = m.poisson(), c = E / (1 - nu * nu);
+  const L twice = L(2 * m.shear);
+  const Sym3<L> stress{t.stress.xx - L(c) * fma(L(nu), flow.yy, flow.xx),
+                       t.stress.yy - L(c) * fma(L(nu), flow.xx, flow.yy),
+                       L(0.0),
+                       t.stress.xy - twice * flow.xy,
+                       t.stress.yz - twice * flow.yz,
+                       t.stress.zx - twice * flow.zx};
+  dzz = fma(L(-nu / E), (stress.xx - old.xx) + (stress.yy - old.yy), flow.zz);
+  if (back) *back += L(Real(2.0 / 3.0) * m.kinematic) * flow;
+  return stress;
+}
+
+}  // namespace fabrica
