@@ -71,15 +71,35 @@ void GeneralSpring::move_window(int side, double force, SpringState& s) const {
   if (beta != 0 && beta != 1) other += change;
 }
 
+// Where on the loading curve a side begins to yield, and the force by which the curve is moved,
+// when the path comes to its edge from the other side.
+void GeneralSpring::enter(int side, SpringState& s) const {
+  const double edge = side > 0 ? high(s) : low(s);
+  double& reached = side > 0 ? s.reached_high : s.reached_low;
+  s.back = 0;
+  if (beta == 0) {
+    if (reached == 0) reached = loading.inverse(edge);
+  } else if (beta == 1) {
+    reached = loading.inverse(edge);
+  } else {
+    const double first = side > 0 ? tension_yield : compression_yield;
+    reached = loading.inverse(first);
+    s.back = edge - first;
+  }
+  s.plastic = s.shift + unloading.inverse(edge) - reached;
+  s.side = side;
+}
+
 // On the loading curve at the given side of the window.
 SpringForce GeneralSpring::yield(int side, double d, SpringState& s) const {
   SpringForce r;
-  r.force = loading.at(d - s.plastic, r.stiffness);
+  r.force = s.back + loading.at(d - s.plastic, r.stiffness);
   // only BETA = 0 lets the force fall below the edge
   const double edge = side > 0 ? high(s) : low(s);
   if (beta != 0 && side * (r.force - edge) < 0) r.force = edge;
+  (side > 0 ? s.reached_high : s.reached_low) = d - s.plastic;
   move_window(side, r.force, s);
-  s.yielded = side;
+  s.yielded = s.side = side;
   // where an unloading from here would run
   s.shift = d - unloading.inverse(r.force);
   r.stiffness = std::max({r.stiffness, unloading.steepest(), 0.0});
@@ -90,9 +110,13 @@ SpringForce GeneralSpring::force(const SpringMotion& m, SpringState& s) const {
   const double step = m.d - s.last;
   s.last = m.d;
   SpringForce r;
+  const auto edge_passed = [&] { return r.force > high(s) ? 1 : r.force < low(s) ? -1 : 0; };
   if (s.yielded == 0) {
     r.force = loading.at(m.d, r.stiffness);
-    const int side = r.force > high(s) ? 1 : r.force < low(s) ? -1 : 0;
+    // by position, since a softening curve may never rise above its yield force
+    const int side = m.d > loading.inverse(tension_yield)       ? 1
+                     : m.d < loading.inverse(compression_yield) ? -1
+                                                                : 0;
     r.stiffness = std::max(r.stiffness, 0.0);
     return side == 0 ? r : yield(side, m.d, s);
   }
@@ -102,11 +126,9 @@ SpringForce GeneralSpring::force(const SpringMotion& m, SpringState& s) const {
   s.yielded = 2;
   r.force = unloading.at(m.d - s.shift, r.stiffness);
   r.stiffness = std::max(r.stiffness, 0.0);
-  const int side = r.force > high(s) ? 1 : r.force < low(s) ? -1 : 0;
+  const int side = edge_passed();
   if (side == 0) return r;
-  // shift the loading curve to the point where the path meets the edge of the window
-  const double edge = side > 0 ? high(s) : low(s);
-  s.plastic = s.shift + unloading.inverse(edge) - loading.inverse(edge);
+  if (side != int(s.side)) enter(side, s);
   return yield(side, m.d, s);
 }
 

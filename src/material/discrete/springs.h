@@ -47,6 +47,9 @@ struct SpringState {
   double viscous = 0;        // fading part of (7)
   double shift = 0;          // of the unloading curve in (6)
   double high = 0, low = 0;  // yield window of (6), relative to its start
+  double reached_high = 0, reached_low = 0;  // of (6): where each side is on the loading curve
+  double back = 0;                           // of (6): force by which the loading curve is moved
+  double side = 0;                           // of (6): side that yielded last
   double yielded = 0;  // of (6): 0 not yet, +1 or -1 on the loading curve, 2 on the unloading curve
 };
 
@@ -103,7 +106,9 @@ struct NonlinearDamper {
 // the window the force follows L, shifted so that it meets the edge, and the window moves:
 //   BETA = 0  only the edge that is reached, also downwards (softening)
 //   BETA = 1  both edges outwards by the same amount (isotropic)
-//   else      both edges along by the same amount (kinematic)
+//   else      both edges along by the same amount (kinematic); L restarts at the side's first yield
+//   force,
+//             moved to the edge in force as well
 struct GeneralSpring {
   static constexpr std::string_view keyword = "MAT_SPRING_GENERAL_NONLINEAR";
   Polyline loading, unloading;
@@ -115,6 +120,7 @@ struct GeneralSpring {
   double high(const SpringState& s) const { return tension_yield + s.high; }
   double low(const SpringState& s) const { return compression_yield + s.low; }
   void move_window(int side, double force, SpringState& s) const;
+  void enter(int side, SpringState& s) const;
   SpringForce yield(int side, double d, SpringState& s) const;
 };
 

@@ -137,6 +137,25 @@ TEST_CASE("springs: the kinematic loop of S06 is the bilinear one") {
         doctest::Approx(2 * FY * width * (1 - KT / K)).epsilon(1e-6));
 }
 
+// Softening (BETA = 0): the tension side falls for good and takes up where it left.
+TEST_CASE("springs: S06 keeps its softened strength") {
+  TestCard c;
+  c.value = {{"beta", 0}, {"tyi", 1}, {"cyi", -1}};
+  c.points["lcdl"] = {{-2.25, -0.25, 0.25, 1.25}, {-2, -1, 1, 0.5}};
+  c.points["lcdu"] = {{-1, 1}, {-4, 4}};
+  const auto law = spring_law("MAT_SPRING_GENERAL_NONLINEAR", c);
+  SpringState s;
+  const auto at = [&](double d) { return spring_force(*law, {d}, s).force; };
+  CHECK(at(0.25) == doctest::Approx(1));
+  CHECK(at(0.75) == doctest::Approx(0.75));            // on the falling branch
+  CHECK(at(0.65) == doctest::Approx(0.35));            // elastic with slope 4
+  CHECK(at(0.85) == doctest::Approx(0.70));            // back on the branch
+  CHECK(at(0.85 - 0.425) == doctest::Approx(-1.0));    // the other side yields at CYI
+  CHECK(at(-0.075) == doctest::Approx(-1.25));         // and hardens with slope 0.5
+  CHECK(at(-0.075 + 0.4875) == doctest::Approx(0.7));  // the tension side waits at 0.7
+  CHECK(at(-0.075 + 0.5875) == doctest::Approx(0.65));
+}
+
 // Isotropic: the window grows until the path stays inside it; then the loop is elastic.
 TEST_CASE("springs: the isotropic loop of S06 shakes down") {
   TestCard c;
@@ -168,7 +187,7 @@ TEST_CASE("springs: the Maxwell spring holds FC after TC") {
   CHECK(spring_force(*law, {0.7, 0, 0.1, 1.0}, state).force == 0.25);
 }
 
-// First cycle of S08 in compression to A: load along F = x / 2 ... dissipated = A F/2 - F^2 / (2
+// First cycle of S08 in compression to A: loading along y = x / 2 loses A F/2 - F^2 / (2
 // KU); later cycles run up and down the unloading line and lose nothing.
 TEST_CASE("springs: the inelastic spring loses its first loading only") {
   TestCard c;
