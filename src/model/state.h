@@ -6,6 +6,7 @@
 
 #include "base/aligned.h"
 #include "base/fixed_point.h"
+#include "base/kahan.h"
 #include "base/tensor.h"
 
 namespace fabrica {
@@ -60,6 +61,7 @@ struct Energies {
 
 struct State {
   double time = 0;
+  KahanSum time_sum;       // what `time` is the value of
   std::int64_t cycle = 0;
   double dt = 0;           // step from t(n) to t(n+1)
   double dt_previous = 0;  // step from t(n-1) to t(n)

@@ -9,7 +9,6 @@
 #include "model/model.h"
 #include "model/state.h"
 #include "solver/contact.h"
-#include "solver/damping.h"
 #include "solver/discrete_elements.h"
 #include "solver/initial_conditions.h"
 #include "solver/joints.h"
@@ -28,6 +27,13 @@ struct RunOptions {
   bool energy_audit = false;
 };
 
+// Asked at t(n) of every step; when wants() says yes, sample() is called once forces, energies, x(n), v(n+1/2) and
+// the remembered v(n-1/2) are all there.
+struct Sampler {
+  std::function<bool(double time)> wants;
+  std::function<void()> sample;
+};
+
 // why a run ended
 enum class Ending { running, end_time, end_cycle, signal, time_step_too_small, negative_volume, not_a_number };
 
@@ -44,9 +50,7 @@ class Simulation {
   Simulation(const Model& model, const RunOptions& options, Diagnostics& diagnostics);
 
   // Advances one step. After it, x is at t(n+1), v at t(n+1/2) and forces belong to t(n).
-  void step();
-  // Brings kinetic energy and other sums up to date; cheap enough for every output, not for every step.
-  void update_energies();
+  void step(const Sampler& sampler = {});
 
   const Model& model() const { return model_; }
   const State& state() const { return state_; }
@@ -66,15 +70,17 @@ class Simulation {
   // parts of the run, for output
   Team& team() { return team_; }
   const Tiles& tiles() const { return tiles_; }
-  const Contacts& contacts() const { return contacts_; }
-  const RigidBodies& rigid_bodies() const { return rigid_bodies_; }
-  const Joints& joints() const { return joints_; }
-  const RigidWalls& rigid_walls() const { return rigid_walls_; }
-  const NodeConstraints& node_constraints() const { return node_constraints_; }
-  const DiscreteElements& discrete_elements() const { return discrete_elements_; }
+  const Contacts& contacts() const { return *contacts_; }
+  const RigidBodies& rigid_bodies() const { return *rigid_bodies_; }
+  const Joints& joints() const { return *joints_; }
+  const RigidWalls& rigid_walls() const { return *rigid_walls_; }
+  const NodeConstraints& node_constraints() const { return *node_constraints_; }
+  const DiscreteElements& discrete_elements() const { return *discrete_; }
   const std::vector<double>& part_internal() const { return part_internal_; }
   const std::vector<double>& part_hourglass() const { return part_hourglass_; }
-  // acceleration of a node at t(n), before constraints moved it
+  const MassScaling& mass_scaling() const { return mass_scaling_; }
+  // of a node at t(n), while sampling: mean of the two half-step velocities, and their difference over the step
+  Vec3d velocity(int node) const;
   Vec3d acceleration(int node) const;
 
  private:
@@ -82,31 +88,37 @@ class Simulation {
   void contact_forces();
   void external_forces();
   void assemble();
-  void constrain();
   void accelerate();
   void advance_nodes();
   void account_energy();
   void choose_time_step();
   void check_health();
+  void remember_velocities();
+  void update_energies();
   void set_up_masses(Diagnostics& diagnostics);
+  double smallest_element_step();
+  TimeStepOwner worst_element(int tile) const;
+  double model_size() const;
   ContactInput contact_input() const;
+  void end(Ending ending, std::string text);
 
   const Model& model_;
   Team team_;
   State state_;
   Tiles tiles_;
   MassScaling mass_scaling_;
-  RigidBodies rigid_bodies_;
-  Joints joints_;
-  NodeConstraints node_constraints_;
-  RigidWalls rigid_walls_;
-  Loads loads_;
-  DampingForces damping_;
-  DiscreteElements discrete_elements_;
-  Contacts contacts_;
+  std::unique_ptr<RigidBodies> rigid_bodies_;
+  std::unique_ptr<Joints> joints_;
+  std::unique_ptr<NodeConstraints> node_constraints_;
+  std::unique_ptr<RigidWalls> rigid_walls_;
+  std::unique_ptr<Loads> loads_;
+  std::unique_ptr<Damping> damping_;
+  std::unique_ptr<DiscreteElements> discrete_;
+  std::unique_ptr<Contacts> contacts_;
   std::vector<double> part_internal_, part_hourglass_;
-  std::vector<Vec3d> velocity_before_;  // of nodes with special treatment
+  std::vector<Vec3d> velocity_before_;  // v(n-1/2), while sampling
   double end_time_ = 0, physical_mass_ = 0, initial_step_ = 0;
+  bool energy_started_ = false;
   Ending ending_ = Ending::running;
   std::string ending_text_;
 };

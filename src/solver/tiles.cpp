@@ -6,6 +6,7 @@
 #include <numeric>
 #include <ostream>
 
+#include "base/pack.h"
 #include "solver/partition.h"
 
 namespace fabrica {
@@ -104,6 +105,7 @@ Tiles::Tiles(const Model& model, Diagnostics& diagnostics) {
   place_of_beam.resize(model.beams.size());
 
   std::vector<int> local(model.nodes.size(), -1);
+  std::size_t steps_size = 0;
   for (int part = 0; part < int(model.parts.size()); ++part) {
     for (Group& group : builder.groups()[part]) {
       const Part& p = model.parts[part];
@@ -165,12 +167,15 @@ Tiles::Tiles(const Model& model, Diagnostics& diagnostics) {
           if (dot(d, d) < best) best = dot(d, d), t.anchor = n;
           local[n] = -1;
         }
+        t.step = steps_size;
+        steps_size += std::size_t(blocks) * block_size;
         t.state = state_.size();
         state_.resize(state_.size() + std::size_t(blocks) * c.fields * block_size, Real(0));
         tiles.push_back(t);
       }
     }
   }
+  steps.resize(steps_size);
   force.resize(node.size());
   if (any_rotations) moment.resize(node.size());
 
@@ -297,6 +302,7 @@ void Tiles::forces(State& state, Team& team) {
       view.moment = moment.data() + t.node_first;
       std::fill_n(view.moment, t.node_count, ForceRecord{});
     }
+    if (record_steps) view.element_time_step = steps.data() + t.step;
     c.kernel->forces(c.parameters, Real(state.dt_previous), view);
     t.internal = view.internal, t.hourglass = view.hourglass, t.damping = view.damping;
     t.time_step = view.time_step, t.smallest_volume = view.smallest_volume;

@@ -27,7 +27,7 @@ struct Tile {
   int first, count;             // range in Tiles::element
   int node_first, node_count;   // range in Tiles::node
   int anchor;                   // the node that positions are taken relative to
-  std::size_t connectivity, state;
+  std::size_t connectivity, state, step;
   // results of the last pass
   double internal = 0, hourglass = 0, damping = 0;
   Real time_step = 0, smallest_volume = 0;
@@ -72,6 +72,9 @@ class Tiles {
   std::vector<int> partial_first, partial;      // node -> places in `force`, in tile order
   std::vector<ElementPlace> place_of_solid, place_of_shell, place_of_beam;
   bool any_rotations = false;
+  // when set, forces() leaves every element's own stable step in `steps`, at tile.step + slot
+  bool record_steps = false;
+  AlignedVector<Real> steps;
   int elements() const { return int(element.size()); }
 
  private:

@@ -1,0 +1,187 @@
+#include "solver/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/hash.h"
+
+namespace fabrica {
+namespace {
+
+constexpr int chunk_size = 1024;  // nodes per chunk of work
+int chunks_of(int n) { return (n + chunk_size - 1) / chunk_size; }
+
+// calls fn(first, last) for fixed chunks of 0..n
+template <class Fn>
+void for_chunks(Team& team, int n, Fn fn) {
+  team.for_each(chunks_of(n), [&](int c, int) { fn(c * chunk_size, std::min(n, (c + 1) * chunk_size)); });
+}
+
+// a force that would move the mean node by a mean element length in one step: scales the fixed-point sums
+double force_scale(const Model& model, const State& state, double step) {
+  double mass = 0;
+  Vec3d low = model.nodes.x.empty() ? Vec3d{0, 0, 0} : model.nodes.x[0], high = low;
+  for (const auto& n : state.nodes) mass = std::max(mass, n.mass);
+  for (const auto& x : model.nodes.x)
+    for (int d = 0; d < 3; ++d) low[d] = std::min(low[d], x[d]), high[d] = std::max(high[d], x[d]);
+  const double size = norm(high - low) / std::max(1.0, std::cbrt(double(model.nodes.size())));
+  return step > 0 ? mass * size / (step * step) : 1.0;
+}
+
+}  // namespace
+
+Simulation::Simulation(const Model& model, const RunOptions& options, Diagnostics& diagnostics)
+    : model_(model), team_(options.threads), tiles_(model, diagnostics), mass_scaling_(model.controls) {
+  const int n = model.nodes.size();
+  end_time_ = options.end_time > 0 ? options.end_time : model.controls.end_time;
+  set_up_masses(diagnostics);
+  if (diagnostics.has_errors()) return;
+
+  state_.dt = 0, state_.dt_previous = 0;
+  initial_step_ = smallest_element_step();
+  mass_scaling_.start(model, state_, tiles_);
+  if (mass_scaling_.active()) initial_step_ = std::max(initial_step_, mass_scaling_.step());
+  const double scale = force_scale(model, state_, initial_step_);
+  state_.interaction.resize(n, FixedScale::of(scale));
+  const bool rotations = !state_.spins.empty();
+  if (rotations) state_.interaction_moment.resize(n, FixedScale::of(scale * model_size()));
+
+  contacts_ = std::make_unique<Contacts>(model, state_, contact_input(), diagnostics);
+  rigid_bodies_ = std::make_unique<RigidBodies>(model, state_, diagnostics);
+  joints_ = std::make_unique<Joints>(model, *rigid_bodies_, state_, diagnostics);
+  node_constraints_ = std::make_unique<NodeConstraints>(model, state_, diagnostics);
+  rigid_walls_ = std::make_unique<RigidWalls>(model, state_, diagnostics);
+  loads_ = std::make_unique<Loads>(model, state_, diagnostics);
+  damping_ = std::make_unique<Damping>(model, state_, diagnostics);
+  discrete_ = std::make_unique<DiscreteElements>(model, state_, diagnostics);
+  apply_initial_conditions(model, state_, *rigid_bodies_, diagnostics);
+  part_internal_.assign(model.parts.size(), 0);
+  part_hourglass_.assign(model.parts.size(), 0);
+}
+
+void Simulation::set_up_masses(Diagnostics& diagnostics) {
+  const int n = model_.nodes.size();
+  std::vector<double> mass(n, 0), inertia(n, 0);
+  tiles_.add_mass(mass, inertia);
+  add_rigid_part_mass(model_, mass, inertia);
+  for (const NodalMass& m : model_.masses) mass[m.node] += m.mass;
+  for (const NodalInertia& m : model_.inertias) {
+    mass[m.node] += m.mass;
+    inertia[m.node] += (m.inertia[0] + m.inertia[3] + m.inertia[5]) / 3;
+  }
+  const bool rotations = std::any_of(inertia.begin(), inertia.end(), [](double j) { return j > 0; });
+  state_.nodes.resize(n);
+  state_.force.assign(n, Vec3d{0, 0, 0});
+  state_.owner.assign(n, NodeOwner::free);
+  state_.physical_mass = mass;
+  for (int i = 0; i < n; ++i) {
+    NodeMotion& node = state_.nodes[i];
+    node.x = model_.nodes.x[i], node.v = {0, 0, 0};
+    physical_mass_ += mass[i];
+    // nodes that carry nothing get no motion of their own
+    node.mass = mass[i], node.inverse_mass = mass[i] > 0 ? 1 / mass[i] : 0;
+  }
+  if (rotations) {
+    state_.spins.resize(n);
+    state_.moment.assign(n, Vec3d{0, 0, 0});
+    for (int i = 0; i < n; ++i) state_.spins[i] = {{0, 0, 0}, inertia[i], {1, 0, 0, 0}};
+  }
+  if (physical_mass_ <= 0)
+    diagnostics.error("no-mass", {}, "", "", "the model has no mass", "Check densities and section properties");
+}
+
+void Simulation::step(const Sampler& sampler) {
+  const bool sampling = sampler.wants && sampler.wants(state_.time);
+  element_forces();
+  contact_forces();
+  external_forces();
+  choose_time_step();
+  if (ending_ != Ending::running) return;
+  assemble();
+  if (sampling) remember_velocities();
+  accelerate();
+  if (sampling) {
+    update_energies();
+    sampler.sample();
+  }
+  advance_nodes();
+  account_energy();
+  state_.time_sum.add(state_.dt);
+  state_.time = state_.time_sum.value();
+  state_.dt_previous = state_.dt;
+  ++state_.cycle;
+  check_health();
+}
+
+// stress and internal force of every element
+void Simulation::element_forces() {
+  tiles_.forces(state_, team_);
+  for (const Tile& t : tiles_.tiles) {
+    const int part = tiles_.classes[t.tile_class].part;
+    part_internal_[part] += t.internal;
+    part_hourglass_[part] += t.hourglass;
+    state_.energy.internal += t.internal;
+    state_.energy.hourglass += t.hourglass;
+    state_.energy.damping += t.damping;
+  }
+  if (mass_scaling_.active()) mass_scaling_.update(model_, state_, tiles_);
+}
+
+void Simulation::contact_forces() { contacts_->forces(model_, state_, team_); }
+
+// springs, joints by penalty, nodal loads and pressures
+void Simulation::external_forces() {
+  discrete_->forces(model_, state_, team_);
+  loads_->forces(model_, state_, team_);
+}
+
+// sums element partials in tile order and the fixed-point interaction forces
+void Simulation::assemble() {
+  const bool rotations = !state_.spins.empty();
+  for_chunks(team_, model_.nodes.size(), [&](int a, int b) {
+    tiles_.sum_partials(state_, a, b);
+    for (int n = a; n < b; ++n) {
+      state_.force[n] += state_.interaction.take(n);
+      if (rotations) state_.moment[n] += state_.interaction_moment.take(n);
+    }
+  });
+  contacts_->transfer_tied_forces(state_, team_);
+  loads_->body_forces(model_, state_, team_);
+}
+
+// v(n+1/2) = v(n-1/2) + dt a, then everything that prescribes motion
+void Simulation::accelerate() {
+  const double dt = state_.mean_dt();
+  rigid_bodies_->gather(state_, team_);
+  for_chunks(team_, model_.nodes.size(), [&](int a, int b) {
+    for (int n = a; n < b; ++n) {
+      if (state_.owner[n] != NodeOwner::free) continue;
+      NodeMotion& node = state_.nodes[n];
+      node.v += (dt * node.inverse_mass) * state_.force[n];
+      if (!state_.spins.empty() && state_.spins[n].inertia > 0)
+        state_.spins[n].w += (dt / state_.spins[n].inertia) * state_.moment[n];
+    }
+  });
+  damping_->apply(model_, state_, team_);
+  node_constraints_->apply(model_, state_);
+  rigid_walls_->apply(model_, state_, team_);
+  rigid_bodies_->integrate(model_, state_, *joints_);
+}
+
+void Simulation::advance_nodes() {
+  const double dt = state_.dt;
+  for_chunks(team_, model_.nodes.size(), [&](int a, int b) {
+    for (int n = a; n < b; ++n)
+      if (state_.owner[n] == NodeOwner::free) state_.nodes[n].x += dt * state_.nodes[n].v;
+  });
+  rigid_bodies_->place_nodes(state_, team_);
+  contacts_->place_tied_nodes(state_, team_);
+}
+
+void Simulation::account_energy() {
+  contacts_->account(state_);
+  discrete_->account(state_);
+  loads_->account(state_);
+}
+
+}  // namespace fabrica
