@@ -1,0 +1,63 @@
+# The two commands are `make demo` and `make test`. Everything else is for people who work on the code.
+# Packages of apt.txt are installed where they are missing; nothing else outside this folder is touched.
+
+SHELL := /bin/bash
+.SHELLFLAGS := -eu -o pipefail -c
+.DEFAULT_GOAL := build
+
+JOBS    ?= $(shell nproc)
+THREADS ?= $(shell nproc)
+FABRICA := build/fabrica
+OUT     ?= out
+
+.PHONY: help demo test build bench validate format clean packages
+
+help: ## list these targets
+	@grep -E '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## (.*)/  make \1\t\2/' | expand -t 18
+
+packages:
+	@missing=(); \
+	for p in $$(grep -vE '^\s*(#|$$)' apt.txt); do \
+	  dpkg-query -W -f '$${Status}' "$$p" 2>/dev/null | grep -q 'ok installed' || missing+=("$$p"); \
+	done; \
+	if [ $${#missing[@]} -gt 0 ]; then \
+	  root=; if [ "$$(id -u)" -ne 0 ]; then root=sudo; fi; \
+	  echo "installing: $${missing[*]}"; \
+	  $$root apt-get -qq update; \
+	  $$root env DEBIAN_FRONTEND=noninteractive apt-get -qq install -y --no-install-recommends \
+	    "$${missing[@]}" > /dev/null; \
+	fi
+
+build: packages ## the program, optimised, as build/fabrica
+	@echo "building release in build/"
+	@cmake --preset release > build.log 2>&1 || { cat build.log; exit 1; }
+	@cmake --build --preset release -j $(JOBS) >> build.log 2>&1 || { tail -50 build.log; exit 1; }
+	@rm -f build.log
+
+demo: build ## crush a square tube and draw the result
+	@echo "crushing a tube: cases/tube-crush -> $(OUT)/tube-crush (one to two minutes)"
+	@$(FABRICA) run cases/tube-crush/tube-crush.k --out $(OUT)/tube-crush --threads $(THREADS)
+	@$(FABRICA) picture $(OUT)/tube-crush --out $(OUT)/tube-crush/tube-crush.png
+	@echo "results in $(OUT)/tube-crush, picture in $(OUT)/tube-crush/tube-crush.png"
+
+test: build ## all tests, with kernels in float and in double
+	@echo "testing release"
+	@ctest --preset release
+	@echo "building double in build-double/"
+	@cmake --preset double > build.log 2>&1 || { cat build.log; exit 1; }
+	@cmake --build --preset double -j $(JOBS) >> build.log 2>&1 || { tail -50 build.log; exit 1; }
+	@rm -f build.log
+	@echo "testing double"
+	@ctest --preset double
+
+bench: build ## speed of the kernels and of whole models
+	@$(FABRICA) run cases/tube-crush/tube-crush.k --out $(OUT)/bench --threads $(THREADS)
+
+validate: build ## run every case that has a case.toml and compare
+	@$(FABRICA) validate cases
+
+format: ## lay out the sources by .clang-format
+	@git ls-files 'src/*.h' 'src/*.cpp' 'src/*.cu' 'tests/*.cpp' 'bench/*.cpp' | xargs -r clang-format -i
+
+clean: ## remove what was built; results in out/ stay
+	@rm -rf build build-*/ build.log
