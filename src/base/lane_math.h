@@ -1,5 +1,5 @@
 #pragma once
-// exp, log, pow, cbrt, sin, cos over any lane: one code of adds, multiplies and explicit fma for every width, so
+// exp, log, expm1, log1p, pow, cbrt, sin, cos over any lane: one code of adds, multiplies and explicit fma for every width, so
 // that the bits do not depend on the width or the C library.
 //   exp x = 2^n e^r,          n = round(x / ln 2), |r| <= ln 2 / 2, Taylor series in r                     (1)
 //   log x = k ln 2 + log(1+f), 1+f in [sqrt(1/2), sqrt(2)], s = f / (2+f),
@@ -178,6 +178,25 @@ FABRICA_FN L log(const L& x) {
   const L infinity = L(Limits::infinity());
   const L positive = select(x < infinity, y, x);
   return select(x > L(0.0), positive, select(x == L(0.0), -infinity, L(Limits::quiet_NaN())));
+}
+
+// log(1 + x), accurate for small x
+template <lane_math::Lane L>
+FABRICA_FN L log1p(const L& x) {
+  // the rounding of u = 1 + x is undone by the factor x / (u - 1)
+  const L u = L(1.0) + x, d = u - L(1.0);
+  const auto same = d == L(0.0);
+  return select(same, x, log(u) * (x / select(same, L(1.0), d)));
+}
+
+// e^x - 1, accurate for small x
+template <lane_math::Lane L>
+FABRICA_FN L expm1(const L& x) {
+  constexpr int degree = lane_math::is_double<L> ? 15 : 8;
+  const L r = clamp(x, L(-0.5), L(0.5));
+  L p = L(lane_math::inverse_factorial(degree));
+  for (int i = degree - 1; i >= 2; --i) p = fma(p, r, L(lane_math::inverse_factorial(i)));
+  return select(abs(x) < L(0.5), fma(r * r, p, r), exp(x) - L(1.0));
 }
 
 // x^y for x >= 0; 0^y = 0 for y > 0, 1 for y = 0

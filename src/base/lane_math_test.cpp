@@ -44,6 +44,12 @@ void check_accuracy() {
   CHECK(worst<T>([](T x) { return pow(x, T(0.2)); },
                  [](long double x) { return std::pow(x, (long double)(T(0.2))); }, 1e-6, 1e6, true) < 2);
   CHECK(worst<T>([](T x) { return pow(x, T(5)); }, [](long double x) { return std::pow(x, 5.0L); }, 0.3, 3) < 4);
+  auto e1 = [](T x) { return expm1(x); };
+  auto l1 = [](T x) { return log1p(x); };
+  CHECK(worst<T>(e1, [](long double x) { return std::expm1(x); }, -2, 2) < 3);
+  CHECK(worst<T>(l1, [](long double x) { return std::log1p(x); }, -0.5, 1) < 3);
+  CHECK(worst<T>(e1, [](long double x) { return std::expm1(x); }, 1e-9, 1e-2, true) < 3);
+  CHECK(worst<T>(l1, [](long double x) { return std::log1p(x); }, 1e-9, 1e-2, true) < 3);
   // near the zeros of sine and cosine the absolute error counts
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> angle(-100, 100);

@@ -42,6 +42,12 @@ struct ElasticLaw {
     return {old.xx + fma(twice, strain.xx, both), old.yy + fma(twice, strain.yy, both), L(0.0),
             fma(twice, strain.xy, old.xy),        fma(twice, strain.yz, old.yz),        fma(twice, strain.zx, old.zx)};
   }
+  // Beam or truss fibre: s_yy = s_zz = s_yz = 0; strain.xx, xy, zx are read.
+  template <class L>
+  FABRICA_FN Sym3<L> uniaxial(const Sym3<L>& old, const Sym3<L>& strain, Point<L>&, State<L>&) const {
+    const L E = L(9 * bulk * shear / (3 * bulk + shear)), twice = L(2 * shear), zero = L(0.0);
+    return {fma(E, strain.xx, old.xx), zero, zero, fma(twice, strain.xy, old.xy), zero, fma(twice, strain.zx, old.zx)};
+  }
 };
 
 }  // namespace fabrica

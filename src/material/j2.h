@@ -19,24 +19,29 @@ struct J2Moduli {
   Real poisson() const { return (3 * bulk - 2 * shear) / (2 * (3 * bulk + shear)); }
 };
 
-// q(lambda) of equation (2)
+// q(lambda) of equation (2), over x = cb lambda; ratio = ca / cb
 template <class L>
 struct J2Modes {
-  L A, B, ca, cb;
+  L A, B;
+  Real ratio, cb;
 
+  // q^2 and, in fall, -q dq/dx
   template <bool plane>
-  FABRICA_FN L q(const L& lambda, L& slope) const {
-    const L b = L(1.0) / fma(cb, lambda, L(1.0));
-    L square = B * b * b, fall = square * b * cb;
+  FABRICA_FN L square(const L& x, L& fall) const {
+    const L pb = L(1.0) + x;
     if constexpr (plane) {
-      const L a = L(1.0) / fma(ca, lambda, L(1.0));
-      const L part = A * a * a;
-      square += part;
-      fall = fma(part * a, ca, fall);
+      // one division for both reciprocals
+      const L pa = fma(L(ratio), x, L(1.0));
+      const L r = L(1.0) / (pa * pb);
+      const L a = pb * r, b = pa * r;
+      const L part_a = A * a * a, part_b = B * b * b;
+      fall = fma(part_a * L(ratio), a, part_b * b);
+      return part_a + part_b;
+    } else {
+      const L b = L(1.0) / pb, part_b = B * b * b;
+      fall = part_b * b;
+      return part_b;
     }
-    const L q = sqrt(square);
-    slope = -(fall / max(q, L(1e-30)));
-    return q;
   }
 };
 
@@ -45,42 +50,56 @@ struct J2Modes {
 // give 0.
 template <bool plane, int passes, class L, class Yield>
 FABRICA_FN L j2_newton(const J2Modes<L>& modes, const Yield& yield) {
-  L lambda = L(0.0);
+  const L per_x = L(Real(2.0 / 3.0) / modes.cb);
+  L x = L(0.0);
   for (int i = 0; i < passes; ++i) {
     L fall = L(0.0), hardening = L(0.0);
-    const L q = modes.template q<plane>(lambda, fall);
-    const L Y = yield(L(2.0 / 3.0) * lambda * q, hardening);
-    const L slope = fma(L(2.0 / 3.0) * hardening * q, fma(lambda, fall, q), -(Y * fall));
-    lambda = max(lambda + (q - Y) * q / max(slope, L(1e-30)), L(0.0));
+    const L square = modes.template square<plane>(x, fall), q = sqrt(square);
+    const L Y = yield(per_x * x * q, hardening);
+    const L slope = fma(per_x * hardening * q, fma(-x, fall, square), Y * fall);
+    x = max(fma((q - Y) / max(slope, L(1e-30)), square, x), L(0.0));
   }
-  return lambda;
+  return x * L(1 / modes.cb);
 }
 
 // The same where the slope of the yield stress is unbounded at small rates: regula falsi (Illinois) on
-// lambda = bound x^4, 0 <= x <= 1; bound follows from the static yield stress, the least that Y can be.
+// cb lambda = bound root^4, 0 <= root <= 1; bound follows from the static yield stress, the least that Y can be.
 template <bool plane, int passes, class L, class Yield>
 FABRICA_FN L j2_bracket(const J2Modes<L>& modes, const L& q_trial, const L& static_yield, const Yield& yield) {
-  const L least = plane ? min(modes.ca, modes.cb) : modes.cb;
-  const L bound = max(q_trial / max(static_yield, L(1e-6) * q_trial + L(1e-30)) - L(1.0), L(0.0)) / least;
-  auto residual = [&](const L& x) {
+  const Real least = plane && modes.ratio < 1 ? modes.ratio : Real(1);
+  const L excess = q_trial / max(static_yield, L(1e-6) * q_trial + L(1e-30)) - L(1.0);
+  const L bound = max(excess, L(0.0)) * L(1 / least);
+  const L per_x = L(Real(2.0 / 3.0) / modes.cb);
+  auto residual = [&](const L& root) {
     L fall = L(0.0), hardening = L(0.0);
-    const L square = x * x, lambda = bound * square * square;
-    const L q = modes.template q<plane>(lambda, fall);
-    return q - yield(L(2.0 / 3.0) * lambda * q, hardening);
+    const L second = root * root, x = bound * second * second;
+    const L q = sqrt(modes.template square<plane>(x, fall));
+    return q - yield(per_x * x * q, hardening);
   };
-  L low = L(0.0), high = L(1.0), x = L(1.0);
+  L low = L(0.0), high = L(1.0), root = L(1.0);
   L at_low = q_trial - static_yield, at_high = residual(high);
   for (int i = 0; i < passes; ++i) {
-    x = clamp(high - at_high * (high - low) / min(at_high - at_low, L(-1e-30)), low, high);
-    const L at = residual(x);
+    root = clamp(high - at_high * (high - low) / min(at_high - at_low, L(-1e-30)), low, high);
+    const L at = residual(root);
     const auto positive = at > L(0.0);
     // the end that stays twice is weighted down, or the secant creeps
     const L kept_high = select(positive, L(0.5) * at_high, at), kept_low = select(positive, at, L(0.5) * at_low);
-    low = select(positive, x, low), high = select(positive, high, x);
+    low = select(positive, root, low), high = select(positive, high, root);
     at_low = kept_low, at_high = kept_high;
   }
-  const L square = x * x;
-  return select(q_trial > static_yield, bound * square * square, L(0.0));
+  const L second = root * root;
+  return select(q_trial > static_yield, bound * second * second, L(0.0)) * L(1 / modes.cb);
+}
+
+// Strain increments completed for the rate measure: yield matters where the material flows, and flow keeps volume.
+template <class L>
+FABRICA_FN Sym3<L> plane_flow_strain(const Sym3<L>& strain) {
+  return {strain.xx, strain.yy, -(strain.xx + strain.yy), strain.xy, strain.yz, strain.zx};
+}
+template <class L>
+FABRICA_FN Sym3<L> fibre_flow_strain(const Sym3<L>& strain) {
+  const L lateral = L(-0.5) * strain.xx;
+  return {strain.xx, lateral, lateral, strain.xy, L(0.0), strain.zx};
 }
 
 // Elastic trial in three dimensions: the whole stress and the trial xi with its modes.
@@ -99,26 +118,49 @@ FABRICA_FN J2Trial<L> j2_trial(const J2Moduli& m, const Sym3<L>& old, const Sym3
   t.xi = deviator(t.stress) - back;
   const L square = L(1.5) * ddot(t.xi, t.xi);
   t.q = sqrt(square);
-  t.modes = {L(0.0), square, L(0.0), L(2 * m.shear + Real(2.0 / 3.0) * m.kinematic)};
+  t.modes = {L(0.0), square, Real(0), 2 * m.shear + Real(2.0 / 3.0) * m.kinematic};
   return t;
+}
+
+// Elastic trial of a beam or truss fibre: s_yy = s_zz = s_yz = 0; strain.xx, xy, zx are read.
+//   A = xi_xx^2, B = 3 (xy^2 + zx^2), ca = 2/3 (E + Hk), xi_xx = s_xx - 3/2 a_xx
+template <class L>
+FABRICA_FN J2Trial<L> j2_fibre_trial(const J2Moduli& m, const Sym3<L>& old, const Sym3<L>& strain,
+                                     const Sym3<L>& back) {
+  const L zero = L(0.0), twice = L(2 * m.shear);
+  J2Trial<L> t;
+  t.stress = {fma(L(m.youngs()), strain.xx, old.xx), zero, zero, fma(twice, strain.xy, old.xy), zero,
+              fma(twice, strain.zx, old.zx)};
+  t.xi = {t.stress.xx - L(1.5) * back.xx, zero, zero, t.stress.xy - back.xy, zero, t.stress.zx - back.zx};
+  const Real hardening = Real(2.0 / 3.0) * m.kinematic, cb = 2 * m.shear + hardening;
+  t.modes = {t.xi.xx * t.xi.xx, L(3.0) * fma(t.xi.xy, t.xi.xy, t.xi.zx * t.xi.zx),
+             (Real(2.0 / 3.0) * m.youngs() + hardening) / cb, cb};
+  t.q = sqrt(t.modes.A + t.modes.B);
+  return t;
+}
+
+// Fibre stress after the flow lambda.
+template <class L>
+FABRICA_FN Sym3<L> j2_fibre_finish(const J2Moduli& m, const J2Trial<L>& t, const L& lambda, Sym3<L>* back,
+                                   L& increment) {
+  const L x = L(t.modes.cb) * lambda, pa = fma(L(t.modes.ratio), x, L(1.0)), pb = L(1.0) + x;
+  const L r = L(1.0) / (pa * pb), a = pb * r, b = pa * r, zero = L(0.0), twice = L(2 * m.shear);
+  increment = L(2.0 / 3.0) * lambda * sqrt(fma(t.modes.A * a, a, t.modes.B * b * b));
+  const L axial = L(2.0 / 3.0) * lambda * a * t.xi.xx;
+  const Sym3<L> flow{axial, L(-0.5) * axial, L(-0.5) * axial, lambda * b * t.xi.xy, zero, lambda * b * t.xi.zx};
+  if (back) *back += L(Real(2.0 / 3.0) * m.kinematic) * flow;
+  return {t.stress.xx - L(m.youngs()) * axial, zero, zero, t.stress.xy - twice * flow.xy, zero,
+          t.stress.zx - twice * flow.zx};
 }
 
 // Stress after the flow lambda; moves the back stress and returns dep in `increment`.
 template <class L>
 FABRICA_FN Sym3<L> j2_finish(const J2Moduli& m, const J2Trial<L>& t, const L& lambda, Sym3<L>* back, L& increment) {
-  const L scale = L(1.0) / fma(t.modes.cb, lambda, L(1.0));
+  const L scale = L(1.0) / fma(L(t.modes.cb), lambda, L(1.0));
   const L flow = lambda * scale;
   increment = L(2.0 / 3.0) * flow * t.q;
   if (back) *back += (L(Real(2.0 / 3.0) * m.kinematic) * flow) * t.xi;
   return t.stress - (L(2 * m.shear) * flow) * t.xi;
-}
-
-// strain:strain of flow in plane stress, where the thickness strain is that of constant volume
-template <class L>
-FABRICA_FN L plane_flow_square(const Sym3<L>& strain) {
-  Sym3<L> d = strain;
-  d.zz = -(d.xx + d.yy);
-  return ddot(d, d);
 }
 
 // Elastic trial in plane stress; strain.zz is not read.
@@ -138,8 +180,9 @@ FABRICA_FN J2Trial<L> j2_plane_trial(const J2Moduli& m, const Sym3<L>& old, cons
   const L sum = t.xi.xx + t.xi.yy, difference = t.xi.yy - t.xi.xx;
   const L shear = fma(t.xi.xy, t.xi.xy, fma(t.xi.yz, t.xi.yz, t.xi.zx * t.xi.zx));
   const Real hardening = Real(2.0 / 3.0) * m.kinematic;
+  const Real cb = 2 * m.shear + hardening;
   t.modes = {L(0.25) * sum * sum, fma(L(0.75), difference * difference, L(3.0) * shear),
-             L(E / (3 * (1 - nu)) + hardening), L(2 * m.shear + hardening)};
+             (E / (3 * (1 - nu)) + hardening) / cb, cb};
   t.q = sqrt(t.modes.A + t.modes.B);
   return t;
 }
@@ -148,7 +191,8 @@ FABRICA_FN J2Trial<L> j2_plane_trial(const J2Moduli& m, const Sym3<L>& old, cons
 template <class L>
 FABRICA_FN Sym3<L> j2_plane_finish(const J2Moduli& m, const Sym3<L>& old, const J2Trial<L>& t, const L& lambda,
                                    Sym3<L>* back, L& increment, L& dzz) {
-  const L a = L(1.0) / fma(t.modes.ca, lambda, L(1.0)), b = L(1.0) / fma(t.modes.cb, lambda, L(1.0));
+  const L x = L(t.modes.cb) * lambda, pa = fma(L(t.modes.ratio), x, L(1.0)), pb = L(1.0) + x;
+  const L r = L(1.0) / (pa * pb), a = pb * r, b = pa * r;
   const L sum = a * (t.xi.xx + t.xi.yy), difference = b * (t.xi.yy - t.xi.xx);
   const L half = L(0.5);
   const Sym3<L> xi{half * (sum - difference), half * (sum + difference), L(0.0), b * t.xi.xy, b * t.xi.yz, b * t.xi.zx};

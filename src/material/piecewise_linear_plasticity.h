@@ -42,7 +42,7 @@ struct PiecewiseLinearPlasticity {
 
   template <class L>
   FABRICA_FN Sym3<L> stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point, State<L>& state) const {
-    const J2Trial<L> trial = j2_trial(moduli, old, strain, Sym3<L>{L(0.0), L(0.0), L(0.0), L(0.0), L(0.0), L(0.0)});
+    const J2Trial<L> trial = j2_trial(moduli, old, strain, no_back<L>());
     const L lambda = flow<false>(trial, strain, point, state);
     L increment;
     const Sym3<L> s = j2_finish(moduli, trial, lambda, static_cast<Sym3<L>*>(nullptr), increment);
@@ -54,17 +54,29 @@ struct PiecewiseLinearPlasticity {
   FABRICA_FN Sym3<L> plane_stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point, State<L>& state,
                                   L& dzz) const {
     const J2Trial<L> trial =
-        j2_plane_trial(moduli, old, strain, Sym3<L>{L(0.0), L(0.0), L(0.0), L(0.0), L(0.0), L(0.0)});
-    Sym3<L> rate_strain = strain;
-    rate_strain.zz = -(strain.xx + strain.yy);
-    const L lambda = flow<true>(trial, rate_strain, point, state);
+        j2_plane_trial(moduli, old, strain, no_back<L>());
+    const L lambda = flow<true>(trial, plane_flow_strain(strain), point, state);
     L increment;
     const Sym3<L> s = j2_plane_finish(moduli, old, trial, lambda, static_cast<Sym3<L>*>(nullptr), increment, dzz);
     finish_point(increment, point, state);
     return s;
   }
 
+  template <class L>
+  FABRICA_FN Sym3<L> uniaxial(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point, State<L>& state) const {
+    const J2Trial<L> trial = j2_fibre_trial(moduli, old, strain, no_back<L>());
+    const L lambda = flow<true>(trial, fibre_flow_strain(strain), point, state);
+    L increment;
+    const Sym3<L> s = j2_fibre_finish(moduli, trial, lambda, static_cast<Sym3<L>*>(nullptr), increment);
+    finish_point(increment, point, state);
+    return s;
+  }
+
  private:
+  template <class L>
+  FABRICA_FN static Sym3<L> no_back() {
+    return {L(0.0), L(0.0), L(0.0), L(0.0), L(0.0), L(0.0)};
+  }
   bool rate_dependent() const { return rate_constant > 0 || bool(rate_curve) || bool(table); }
 
   // S(ep) of equation (1)

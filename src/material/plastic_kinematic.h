@@ -49,19 +49,7 @@ struct PlasticKinematic {
   template <class L>
   FABRICA_FN Sym3<L> stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point, State<L>& state) const {
     const J2Trial<L> trial = j2_trial(moduli, old, strain, state.back);
-    const L Y = fma(L(isotropic), state.plastic_strain, L(yield_stress));
-    L lambda;
-    if (rate_constant > 0 && viscoplastic) {
-      lambda = viscous_flow<false>(trial, Y, point.dt);
-    } else {
-      // dep in closed form, then lambda = 3/2 dep / q with q after the flow
-      const L factor = rate_factor(ddot(strain, strain), point.dt);
-      const L H = factor * L(isotropic);
-      const L excess = max(trial.q - factor * Y, L(0.0));
-      const L scale = Real(3) * moduli.shear + moduli.kinematic;
-      const L dep = excess / (scale + H);
-      lambda = L(1.5) * dep / max(trial.q - scale * dep, L(1e-30));
-    }
+    const L lambda = flow<false>(trial, strain, point, state);
     L increment;
     const Sym3<L> s = j2_finish(moduli, trial, lambda, &state.back, increment);
     finish_point(increment, point, state);
@@ -72,25 +60,44 @@ struct PlasticKinematic {
   FABRICA_FN Sym3<L> plane_stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point, State<L>& state,
                                   L& dzz) const {
     const J2Trial<L> trial = j2_plane_trial(moduli, old, strain, state.back);
-    const L Y = fma(L(isotropic), state.plastic_strain, L(yield_stress));
-    L lambda;
-    if (rate_constant > 0 && viscoplastic) {
-      lambda = viscous_flow<true>(trial, Y, point.dt);
-    } else {
-      const L factor = rate_factor(plane_flow_square(strain), point.dt);
-      const L start = factor * Y, H = factor * L(isotropic);
-      lambda = j2_newton<true, 3>(trial.modes, [&](const L& dep, L& slope) {
-        slope = H;
-        return fma(H, dep, start);
-      });
-    }
+    const L lambda = flow<true>(trial, plane_flow_strain(strain), point, state);
     L increment;
     const Sym3<L> s = j2_plane_finish(moduli, old, trial, lambda, &state.back, increment, dzz);
     finish_point(increment, point, state);
     return s;
   }
 
+  template <class L>
+  FABRICA_FN Sym3<L> uniaxial(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point, State<L>& state) const {
+    const J2Trial<L> trial = j2_fibre_trial(moduli, old, strain, state.back);
+    const L lambda = flow<true>(trial, fibre_flow_strain(strain), point, state);
+    L increment;
+    const Sym3<L> s = j2_fibre_finish(moduli, trial, lambda, &state.back, increment);
+    finish_point(increment, point, state);
+    return s;
+  }
+
  private:
+  template <bool plane, class L>
+  FABRICA_FN L flow(const J2Trial<L>& trial, const Sym3<L>& strain, const Point<L>& point,
+                    const State<L>& state) const {
+    const L Y = fma(L(isotropic), state.plastic_strain, L(yield_stress));
+    if (rate_constant > 0 && viscoplastic) return viscous_flow<plane>(trial, Y, point.dt);
+    const L factor = rate_factor(ddot(strain, strain), point.dt);
+    const L start = factor * Y, H = factor * L(isotropic);
+    if constexpr (plane) {
+      return j2_newton<true, 3>(trial.modes, [&](const L& dep, L& slope) {
+        slope = H;
+        return fma(H, dep, start);
+      });
+    } else {
+      // dep in closed form, then lambda = 3/2 dep / q with q after the flow
+      const L excess = max(trial.q - start, L(0.0));
+      const L scale = L(3 * moduli.shear + moduli.kinematic);
+      const L dep = excess / (scale + H);
+      return L(1.5) * dep / max(trial.q - scale * dep, L(1e-30));
+    }
+  }
   // 1 + (r/C)^(1/P) with r^2 dt^2 given
   template <class L>
   FABRICA_FN L rate_factor(const L& square, const L& dt) const {
