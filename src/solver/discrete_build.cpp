@@ -40,21 +40,6 @@ std::string element_text(std::int64_t id) { return "discrete element " + std::to
 
 }  // namespace
 
-std::vector<NodeShare> discrete_beam_masses(const Model& model) {
-  std::vector<NodeShare> r;
-  for (int i = 0; i < model.beams.size(); ++i) {
-    const int part = model.beams.part[std::size_t(i)];
-    if (!is_discrete_beam(model, part)) continue;
-    const Section& s = section_of(model, part);
-    const int material = model.parts[std::size_t(part)].material;
-    const double density = material < 0 ? 0.0 : model.materials[std::size_t(material)].density;
-    for (int k = 0; k < 2; ++k)
-      r.push_back({model.beams.node[std::size_t(i)][std::size_t(k)], 0.5 * density * s.volume,
-                   0.5 * s.rotary_inertia});
-  }
-  return r;
-}
-
 DiscreteElements::DiscreteElements(const Model& model, const State& state,
                                    Diagnostics& diagnostics) {
   spring_law_.resize(model.parts.size());
@@ -205,11 +190,11 @@ template <class Io>
 void DiscreteElements::stream(Io&& io) {
   for (Spring& s : spring_) {
     io(s.alive), io(s.elongation), io(s.force), io(s.stiffness), io(s.damping);
-    io(s.state), io(s.pull), io(s.before);
+    io(s.state), io(s.pull);
   }
   for (Beam& b : beam_) {
     io(b.alive), io(b.triad), io(b.u), io(b.resultant), io(b.stiffness), io(b.damping);
-    io(b.state), io(b.pull), io(b.before);
+    io(b.state), io(b.pull);
   }
 }
 

@@ -86,7 +86,6 @@ double DiscreteElements::spring_law_force(const State& state, Spring& s, double 
 }
 
 void DiscreteElements::pull_spring(const Model& model, const State& state, Spring& s) const {
-  s.before = s.pull;
   s.pull = {};
   s.force = 0;
   if (!s.alive) return;
@@ -130,7 +129,6 @@ void DiscreteElements::move_triad(const State& state, Beam& b) const {
 }
 
 void DiscreteElements::pull_beam(const State& state, Beam& b) const {
-  b.before = b.pull;
   b.pull = {};
   b.resultant = b.stiffness = b.damping = {};
   if (!b.alive) return;
@@ -197,10 +195,11 @@ void DiscreteElements::forces(const Model& model, State& state, Team& team) {
       give(b.node1, b.node2, b.pull);
     }
   });
+  state.energy.discrete -= 0.5 * state.dt_previous * power(state);
 }
 
-void DiscreteElements::account(State& state) {
-  const auto power = [&](int node1, int node2, const Pull& p) {
+double DiscreteElements::power(const State& state) const {
+  const auto of = [&](int node1, int node2, const Pull& p) {
     const Vec3d v1 = state.nodes[std::size_t(node1)].v;
     const Vec3d v2 = node2 >= 0 ? state.nodes[std::size_t(node2)].v : Vec3d{0, 0, 0};
     return dot(p.force, v1 - v2) + dot(p.moment1, spin(state, node1)) +
@@ -208,10 +207,13 @@ void DiscreteElements::account(State& state) {
   };
   double sum = 0;
   for (const Spring& s : spring_)
-    if (s.law >= 0) sum += power(s.node1, s.node2, s.before) + power(s.node1, s.node2, s.pull);
-  for (const Beam& b : beam_)
-    sum += power(b.node1, b.node2, b.before) + power(b.node1, b.node2, b.pull);
-  state.energy.discrete -= 0.5 * state.dt_previous * sum;
+    if (s.law >= 0) sum += of(s.node1, s.node2, s.pull);
+  for (const Beam& b : beam_) sum += of(b.node1, b.node2, b.pull);
+  return sum;
+}
+
+void DiscreteElements::account(State& state) const {
+  state.energy.discrete -= 0.5 * state.dt * power(state);
 }
 
 // Bound of an element whose nodes share their mass among all elements in proportion to stiffness:

@@ -6,8 +6,10 @@
 // for any number of threads. forces() is called with x at t(n) and v, w at t(n-1/2);
 // State::dt_previous is the step between.
 //
-// Work over that step is taken exactly for the central difference scheme (docs/theory/discrete.md):
-//   dE = -dt/2 sum over nodes (f(n-1) + f(n)).v(n-1/2) + (m(n-1) + m(n)).w(n-1/2)
+// Work is taken exactly for the central difference scheme (docs/theory/discrete.md), one half of a
+// step with the forces at its start and one half with those at its end:
+//   forces()   dE = -dt(n-1,n)/2 sum over nodes f(n).v(n-1/2) + m(n).w(n-1/2)
+//   account()  dE = -dt(n,n+1)/2 sum over nodes f(n).v(n+1/2) + m(n).w(n+1/2)
 #include <array>
 #include <iosfwd>
 #include <optional>
@@ -22,13 +24,6 @@
 
 namespace fabrica {
 
-// Mass and rotary inertia that a discrete beam brings to a node: rho VOL / 2 and INER / 2.
-struct NodeShare {
-  int node;
-  double mass, inertia;
-};
-std::vector<NodeShare> discrete_beam_masses(const Model& model);
-
 class DiscreteElements {
  public:
   // Takes the elements of the model at the state's positions. Parts with a law or an option that is
@@ -38,12 +33,12 @@ class DiscreteElements {
   int springs() const { return int(spring_.size()); }
   int beams() const { return int(beam_.size()); }
 
-  // Adds all forces and moments at t(n) to state.interaction and state.interaction_moment. Once per
-  // step.
+  // Adds all forces and moments at t(n) to state.interaction and state.interaction_moment, and half
+  // of the last step's work to state.energy.discrete, which then belongs to t(n). Once per step.
   void forces(const Model& model, State& state, Team& team);
-  // Adds the work of the last step to state.energy.discrete. After forces(), before velocities
-  // change.
-  void account(State& state);
+  // Adds the first half of the next step's work. Once per step, with v and w at t(n+1/2) and
+  // State::dt the step from t(n) to t(n+1).
+  void account(State& state) const;
   // Largest stable step [time], from the tangents of the last forces() call; infinity without
   // elements.
   double time_step(const State& state) const;
@@ -95,7 +90,7 @@ class DiscreteElements {
     int alive = 1;
     double elongation = 0, force = 0, stiffness = 0, damping = 0;
     SpringState state;
-    Pull pull, before;
+    Pull pull;
   };
   struct Beam {
     int index = -1, node1 = -1, node2 = -1, law = -1;
@@ -109,7 +104,7 @@ class DiscreteElements {
     Mat3d triad{};
     std::array<double, 6> u{}, resultant{}, stiffness{}, damping{};
     BeamLawState state;
-    Pull pull, before;
+    Pull pull;
   };
   struct Node {
     int node = -1;
@@ -128,6 +123,7 @@ class DiscreteElements {
   void pull_beam(const State& state, Beam& b) const;
   void move_triad(const State& state, Beam& b) const;
   Vec3d spin(const State& state, int node) const;
+  double power(const State& state) const;
   template <class Io>
   void stream(Io&& io);
 
