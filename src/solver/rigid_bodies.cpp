@@ -1,0 +1,391 @@
+// The motion of rigid bodies in a cycle.
+#include "solver/rigid_bodies.h"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+#include "load/time_curve.h"
+#include "solver/joints.h"
+#include "solver/stream.h"
+
+namespace fabrica {
+
+void RigidBodies::add_force(int body, const Vec3d& force, const Vec3d& moment) {
+  bodies_[body].force += force;
+  bodies_[body].moment += moment;
+}
+
+void RigidBodies::set_velocity(int body, const Vec3d& v, const Vec3d& w) {
+  RigidMotion& m = bodies_[body].motion;
+  m.v = v, m.w = w;
+  m.momentum = inertia_times(matrix_of(m.q), m.inertia, w);
+}
+
+void RigidBodies::velocity_from_nodes(int body, const State& state) {
+  const RigidBody& b = bodies_[body];
+  double mass = 0;
+  Vec3d p{}, l{};
+  for (int n : b.nodes) mass += state.nodes[n].mass, p += state.nodes[n].mass * state.nodes[n].v;
+  const Vec3d v = mass > 0 ? (1 / mass) * p : Vec3d{};
+  // inertia of the nodes about the body's centre, which differs from the body's where the deck
+  // overrides it
+  Mat3d inertia{};
+  for (int n : b.nodes) {
+    const NodeMotion& node = state.nodes[n];
+    const Vec3d r = node.x - b.motion.x;
+    l += node.mass * cross(r, node.v - v);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        inertia(i, j) += node.mass * ((i == j ? dot(r, r) : 0) - r[i] * r[j]);
+    if (state.spins.empty()) continue;
+    l += state.spins[n].inertia * state.spins[n].w;
+    for (int i = 0; i < 3; ++i) inertia(i, i) += state.spins[n].inertia;
+  }
+  const PrincipalAxes p_axes = principal_axes(inertia);
+  const double largest = std::max({p_axes.value.x, p_axes.value.y, p_axes.value.z});
+  Vec3d local = transpose(p_axes.axes) * l;
+  for (int k = 0; k < 3; ++k)
+    local[k] = largest > 0 && p_axes.value[k] > 1e-9 * largest ? local[k] / p_axes.value[k] : 0.0;
+  set_velocity(body, v, p_axes.axes * local);
+}
+
+void RigidBodies::give_velocity_to_nodes(State& state) const {
+  for (const RigidBody& b : bodies_)
+    for (int n : b.nodes) {
+      state.nodes[n].v = b.motion.v + cross(b.motion.w, state.nodes[n].x - b.motion.x);
+      if (!state.spins.empty()) state.spins[n].w = b.motion.w;
+    }
+}
+
+double RigidBodies::kinetic_energy() const {
+  double e = 0;
+  for (const RigidBody& b : bodies_)
+    if (b.active)
+      e += 0.5 * (b.motion.mass * dot(b.motion.v, b.motion.v) + dot(b.motion.w, b.motion.momentum));
+  return e;
+}
+
+void RigidBodies::gather(State& state, Team& team) {
+  team.for_each(int(chunks_.size()), [&](int c, int) {
+    const Chunk& chunk = chunks_[c];
+    const RigidBody& b = bodies_[chunk.body];
+    Vec3d force{}, moment{};
+    for (int i = chunk.begin; i < chunk.end; ++i) {
+      const int n = b.nodes[i];
+      force += state.force[n];
+      moment += cross(state.nodes[n].x - b.motion.x, state.force[n]);
+      if (!state.spins.empty()) moment += state.moment[n];
+    }
+    partial_[2 * c] = force, partial_[2 * c + 1] = moment;
+  });
+  for (std::size_t c = 0; c < chunks_.size(); ++c)
+    add_force(chunks_[c].body, partial_[2 * c], partial_[2 * c + 1]);
+  break_welds(state);
+}
+
+// The force that the weld carries at a node is m a - f; its part along the weld pulls, the rest
+// shears.
+void RigidBodies::break_welds(State& state) {
+  for (RigidBody& b : bodies_) {
+    if (!b.active || b.nodal < 0 || b.nodes.size() < 2) continue;
+    const NodalRigidBody& weld = model_.nodal_rigid_bodies[b.nodal];
+    bool fails = state.time >= weld.failure_time;
+    if (!fails && (weld.normal_force > 0 || weld.shear_force > 0)) {
+      const RigidMotion& m = b.motion;
+      const Mat3d R = matrix_of(m.q);
+      const Vec3d a = (1 / m.mass) * b.force;
+      const Vec3d alpha = inverse_inertia_times(R, m.inertia, b.moment - cross(m.w, m.momentum));
+      const Vec3d first = state.nodes[b.nodes[0]].x;
+      for (std::size_t i = 1; i < b.nodes.size() && !fails; ++i) {
+        const NodeMotion& node = state.nodes[b.nodes[i]];
+        const Vec3d r = node.x - m.x, axis = node.x - first;
+        const Vec3d f =
+            state.force[b.nodes[i]] - node.mass * (a + cross(alpha, r) + cross(m.w, cross(m.w, r)));
+        const double length = norm(axis), total = norm(f);
+        // coincident nodes have no axis: the whole force counts as normal
+        const double pull = length > 0 ? dot(f, axis) / length : total;
+        const double shear =
+            length > 0 ? std::sqrt(std::max(0.0, total * total - pull * pull)) : 0.0;
+        double sum = 0;
+        if (weld.normal_force > 0)
+          sum += std::pow(std::max(pull, 0.0) / weld.normal_force, weld.normal_exponent);
+        if (weld.shear_force > 0) sum += std::pow(shear / weld.shear_force, weld.shear_exponent);
+        fails = sum >= 1;
+      }
+    }
+    if (!fails) continue;
+    b.active = false;
+    for (int n : b.nodes) state.owner[n] = NodeOwner::free, node_to_body_[n] = -1;
+  }
+}
+
+void RigidBodies::place_nodes(State& state, Team& team) {
+  std::vector<Mat3d> R(bodies_.size());
+  std::vector<Quaternion> turn(bodies_.size());
+  for (int b = 0; b < size(); ++b) {
+    R[b] = matrix_of(bodies_[b].motion.q);
+    turn[b] = normalised(bodies_[b].motion.q * bodies_[b].start_q.conjugate());
+  }
+  const double rate = state.dt > 0 ? 1 / state.dt : 0;
+  team.for_each(int(chunks_.size()), [&](int c, int) {
+    const Chunk& chunk = chunks_[c];
+    const RigidBody& b = bodies_[chunk.body];
+    if (!b.active) return;
+    for (int i = chunk.begin; i < chunk.end; ++i) {
+      NodeMotion& node = state.nodes[b.nodes[i]];
+      const Vec3d x = b.motion.x + R[chunk.body] * b.r[i];
+      node.v = rate * (x - node.x);
+      node.x = x;
+      if (state.spins.empty()) continue;
+      NodeSpin& spin = state.spins[b.nodes[i]];
+      const Quaternion& q = turn[chunk.body];
+      spin.w = b.motion.w;
+      spin.q[0] = q.w, spin.q[1] = q.x, spin.q[2] = q.y, spin.q[3] = q.z;
+    }
+  });
+}
+
+// Constraint codes of MAT_RIGID and NRB_SPC as conditions of zero velocity.
+void RigidBodies::code_conditions(int cmo, int con1, int con2, int local_system, const RigidBody& b,
+                                  int local, std::vector<GroundCondition>& out) const {
+  static constexpr std::array<int, 8> masks{0, 1, 2, 4, 3, 6, 5, 7};  // none x y z xy yz zx xyz
+  int translation = 0, rotation = 0;
+  Mat3d axes = identity3<double>();
+  if (cmo > 0) {
+    translation = con1 >= 0 && con1 <= 7 ? masks[con1] : 0;
+    rotation = con2 >= 0 && con2 <= 7 ? masks[con2] : 0;
+  } else if (cmo < 0) {
+    // six decimal digits: x y z rx ry rz
+    for (int k = 0, digits = con2; k < 6; ++k, digits /= 10)
+      if (digits % 10) (k < 3 ? rotation : translation) |= 1 << (2 - k % 3);
+    if (local_system >= 0) axes = model_.coordinate_systems[local_system].axes;
+  }
+  (void)b;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3d e{axes(k, 0), axes(k, 1), axes(k, 2)};
+    if (translation >> k & 1) out.push_back({local, false, false, e, 0});
+    if (rotation >> k & 1) out.push_back({local, true, false, e, 0});
+  }
+}
+
+// The condition of a prescribed motion in this step; false while it is not alive.
+bool RigidBodies::motion_condition(const State& state, int index, int local,
+                                   GroundCondition& g) const {
+  const PrescribedMotion& m = model_.prescribed_motions[index];
+  if (state.time < m.birth || state.time >= m.death) return false;
+  const RigidBody& b = bodies_[part_to_body_[m.part]];
+  const Curve& curve = model_.curves[m.curve];
+  const double t = state.time - m.birth;
+  g = {};
+  g.body = local;
+  g.rotation = m.dof >= 5;
+  const int axis = m.dof % 4;  // 1 2 3 and 5 6 7: axes; 4 and 8: along a vector
+  if (axis == 0)
+    g.direction = (1 / norm(m.direction)) * m.direction;
+  else
+    g.direction[axis - 1] = 1;
+  if (m.local) {
+    // body axes: those of the material's local system, else the principal ones
+    const int system = model_.parts[m.part].material >= 0
+                           ? model_.materials[model_.parts[m.part].material].local_system
+                           : -1;
+    if (system >= 0)
+      g.direction = transpose(matrix_of(b.start_q)) *
+                    (transpose(model_.coordinate_systems[system].axes) * g.direction);
+    g.in_body = true;
+  }
+  const Vec3d d = g.in_body ? matrix_of(b.motion.q) * g.direction : g.direction;
+  if (m.kind == 0) {
+    g.target = m.scale * curve_integral(curve.x, curve.y, t, t + state.dt) / state.dt;
+  } else if (m.kind == 1) {
+    const double from = std::max(0.0, t - 0.5 * state.dt_previous);
+    g.target = dot(d, g.rotation ? b.motion.w : b.motion.v) +
+               m.scale * curve_integral(curve.x, curve.y, from, t + 0.5 * state.dt);
+  } else {
+    const double now = g.rotation || m.local ? motion_angle_[index] : dot(d, b.displacement());
+    g.target = (m.scale * curve_value(curve.x, curve.y, t + state.dt) - now) / state.dt;
+  }
+  return true;
+}
+
+void RigidBodies::ground_conditions(const State& state, int body, int local,
+                                    std::vector<GroundCondition>& out,
+                                    std::vector<int>& motion_of) const {
+  const RigidBody& b = bodies_[body];
+  if (b.part >= 0 && model_.parts[b.part].material >= 0) {
+    const Material& m = model_.materials[model_.parts[b.part].material];
+    code_conditions(m.cmo, m.con1, m.con2, m.local_system, b, local, out);
+  } else if (b.nodal >= 0) {
+    const NodalRigidBody& m = model_.nodal_rigid_bodies[b.nodal];
+    code_conditions(m.cmo, m.con1, m.con2, m.local_system, b, local, out);
+  }
+  motion_of.resize(out.size(), -1);
+  for (int index : motions_[body]) {
+    GroundCondition g;
+    if (!motion_condition(state, index, local, g)) continue;
+    out.push_back(g);
+    motion_of.push_back(index);
+  }
+}
+
+// Bodies that joints connect are solved together.
+void RigidBodies::build_components(const Joints* joints) {
+  std::vector<int> parent(size());
+  std::iota(parent.begin(), parent.end(), 0);
+  auto root = [&](int i) {
+    while (parent[i] != i) i = parent[i];
+    return i;
+  };
+  for (int j = 0; joints && j < joints->size(); ++j) {
+    const int a = root(joints->joints_[j].a), b = root(joints->joints_[j].b);
+    parent[std::max(a, b)] = std::min(a, b);
+  }
+  components_.clear(), component_links_.clear();
+  std::vector<int> index(size(), -1);
+  for (int b = 0; b < size(); ++b) {
+    const int r = root(b);
+    if (r == b)
+      index[b] = int(components_.size()), components_.push_back({}), component_links_.push_back({});
+    components_[index[r]].push_back(b);
+  }
+  for (int j = 0; joints && j < joints->size(); ++j)
+    component_links_[index[root(joints->joints_[j].a)]].push_back(j);
+  components_known_ = true;
+}
+
+void RigidBodies::accept(State& state, int body, const RigidTrial& trial) {
+  RigidBody& b = bodies_[body];
+  const double rate = 1 / state.mean_dt();
+  b.acceleration = rate * (trial.v - b.motion.v);
+  b.angular_acceleration = rate * (trial.w - b.motion.w);
+  b.rotation += state.dt * trial.w;
+  b.motion.v = trial.v, b.motion.w = trial.w, b.motion.momentum = trial.momentum;
+  b.motion.x = trial.x, b.motion.q = trial.q;
+  b.applied_force = b.force, b.applied_moment = b.moment;
+  b.force = b.moment = {};
+}
+
+void RigidBodies::integrate(State& state, Joints* joints) {
+  if (!components_known_) build_components(joints);
+  std::fill(motion_reaction_.begin(), motion_reaction_.end(), 0.0);
+  state.energy.external_work += pending_external_;
+  state.energy.joint += pending_joint_;
+  pending_external_ = pending_joint_ = 0;
+  for (RigidBody& b : bodies_) b.constraint_force = b.constraint_moment = {};
+  for (std::size_t c = 0; c < components_.size(); ++c)
+    solve_component(state, components_[c], joints, component_links_[c]);
+}
+
+void RigidBodies::solve_component(State& state, const std::vector<int>& members, Joints* joints,
+                                  const std::vector<int>& links) {
+  std::vector<RigidMotion> before;
+  std::vector<RigidTrial> trials;
+  std::vector<GroundCondition> grounds;
+  std::vector<int> motion_of;
+  const double dt_v = state.mean_dt();
+  for (int member : members) {
+    RigidBody& b = bodies_[member];
+    const int local = int(before.size());
+    before.push_back(b.motion);
+    RigidTrial t{};
+    t.v = b.motion.v + (dt_v / b.motion.mass) * b.force;
+    t.momentum = b.motion.momentum + dt_v * b.moment;
+    t.w = b.motion.w;
+    trials.push_back(t);
+    if (b.active) ground_conditions(state, member, local, grounds, motion_of);
+  }
+  auto local_of = [&](int body) {
+    return int(std::lower_bound(members.begin(), members.end(), body) - members.begin());
+  };
+  std::vector<LinkCondition> conditions;
+  std::vector<int> joint_of;
+  for (int j : links) {
+    Joints::Item& item = joints->joints_[j];
+    item.force = item.moment = {};
+    for (const JointCondition& c : item.conditions) {
+      conditions.push_back({local_of(item.a), local_of(item.b), &item.geometry, &c});
+      joint_of.push_back(j);
+    }
+  }
+  if (grounds.empty() && conditions.empty()) {
+    for (std::size_t i = 0; i < members.size(); ++i) {
+      advance_trial(before[i], state.dt, trials[i]);
+      accept(state, members[i], trials[i]);
+    }
+    return;
+  }
+  Component component;
+  component.solve(before, trials, state.dt, grounds, conditions);
+
+  // reactions and their work: half with the velocity before, half with the one after
+  for (std::size_t i = 0; i < component.rows().size(); ++i) {
+    const Component::Row& row = component.rows()[i];
+    const double reaction = component.impulse[i] / dt_v;
+    double speed_before = dot(row.j.b_v, before[row.b].v) + dot(row.j.b_w, before[row.b].w);
+    double speed_after = dot(row.j.b_v, trials[row.b].v) + dot(row.j.b_w, trials[row.b].w);
+    RigidBody& b = bodies_[members[row.b]];
+    b.constraint_force += reaction * row.j.b_v;
+    b.constraint_moment += reaction * row.j.b_w;
+    if (row.a >= 0) {
+      speed_before += dot(row.j.a_v, before[row.a].v) + dot(row.j.a_w, before[row.a].w);
+      speed_after += dot(row.j.a_v, trials[row.a].v) + dot(row.j.a_w, trials[row.a].w);
+      RigidBody& a = bodies_[members[row.a]];
+      a.constraint_force += reaction * row.j.a_v;
+      a.constraint_moment += reaction * row.j.a_w;
+    }
+    const double first = 0.5 * state.dt_previous * speed_before * reaction;
+    const double second = 0.5 * state.dt * speed_after * reaction;
+    if (i < grounds.size()) {
+      state.energy.external_work += first, pending_external_ += second;
+      if (motion_of[i] >= 0) motion_reaction_[motion_of[i]] = reaction;
+    } else {
+      state.energy.joint -= first, pending_joint_ -= second;
+      Joints::Item& item = joints->joints_[joint_of[i - grounds.size()]];
+      const Vec3d arm = matrix_of(before[row.b].q) * item.geometry.point_b;
+      item.force += reaction * row.j.b_v;
+      item.moment += reaction * (row.j.b_w - cross(arm, row.j.b_v));
+    }
+  }
+  for (std::size_t i = 0; i < motion_of.size(); ++i) {
+    if (motion_of[i] < 0) continue;
+    const GroundCondition& g = grounds[i];
+    const RigidTrial& t = trials[g.body];
+    const Vec3d d = g.in_body ? matrix_of(t.q_half) * g.direction : g.direction;
+    motion_angle_[motion_of[i]] += state.dt * dot(d, g.rotation ? t.w : t.v);
+  }
+  for (std::size_t i = 0; i < members.size(); ++i) accept(state, members[i], trials[i]);
+}
+
+void RigidBodies::save(std::ostream& out) const {
+  for (const RigidBody& b : bodies_) {
+    write_value(out, b.active);
+    write_value(out, b.motion);
+    for (const Vec3d* v :
+         {&b.force, &b.moment, &b.applied_force, &b.applied_moment, &b.constraint_force,
+          &b.constraint_moment, &b.acceleration, &b.angular_acceleration, &b.rotation})
+      write_value(out, *v);
+  }
+  write_vector(out, motion_angle_);
+  write_vector(out, motion_reaction_);
+  write_value(out, pending_external_);
+  write_value(out, pending_joint_);
+}
+
+void RigidBodies::load(std::istream& in) {
+  for (RigidBody& b : bodies_) {
+    read_value(in, b.active);
+    read_value(in, b.motion);
+    for (Vec3d* v : {&b.force, &b.moment, &b.applied_force, &b.applied_moment, &b.constraint_force,
+                     &b.constraint_moment, &b.acceleration, &b.angular_acceleration, &b.rotation})
+      read_value(in, *v);
+    if (!b.active)
+      for (int n : b.nodes) node_to_body_[n] = -1;
+  }
+  read_vector(in, motion_angle_);
+  read_vector(in, motion_reaction_);
+  read_value(in, pending_external_);
+  read_value(in, pending_joint_);
+}
+
+}  // namespace fabrica
