@@ -29,6 +29,28 @@ FABRICA_FN L lookup(const CurveView& curve, const L& a, L& slope) {
   return y;
 }
 
+// Value of a curve at a >= 0, the slope there and, in area, the integral from 0; the first point stands at 0 (a curve
+// that starts later is read as if it began with its first segment). All lanes scan together.
+template <class L>
+FABRICA_FN L lookup_with_area(const CurveView& curve, const L& a, L& slope, L& area) {
+  if (curve.n == 1) return slope = L(0.0), area = L(curve.y[0]) * a, L(curve.y[0]);
+  auto rise = [&](int i) { return (curve.y[i + 1] - curve.y[i]) / (curve.x[i + 1] - curve.x[i]); };
+  L x0 = L(curve.x[0]), y0 = L(curve.y[0]), below = L(0.0);
+  slope = L(rise(0));
+  Real sum = 0;
+  for (int i = 1; i < curve.n - 1; ++i) {
+    sum += Real(0.5) * (curve.y[i] + curve.y[i - 1]) * (curve.x[i] - curve.x[i - 1]);
+    const auto beyond = a >= L(curve.x[i]);
+    x0 = select(beyond, L(curve.x[i]), x0);
+    y0 = select(beyond, L(curve.y[i]), y0);
+    slope = select(beyond, L(rise(i)), slope);
+    below = select(beyond, L(sum), below);
+  }
+  const L run = a - x0, y = fma(slope, run, y0);
+  area = fma(L(0.5) * run, y + y0, below);
+  return y;
+}
+
 // Value of a table at abscissa a and rate r: linear in the rate (or its logarithm), constant outside.
 template <class L>
 FABRICA_FN L lookup(const TableView& table, const L& a, const L& rate, L& slope) {
