@@ -64,6 +64,8 @@ class Kernel {
   virtual bool rotations() const = 0;
   virtual bool can_fail() const = 0;
   virtual bool nodal_pressure() const { return false; }
+  // first pass of nodal-pressure elements, see solver/cpu/nodal_tet.h
+  virtual void nodal_rates(const ElementParameters&, Real, TileView&) const {}
   virtual int state_fields(const ElementParameters&) const = 0;
   virtual void initialise(const ElementParameters&, TileView&) const = 0;
   virtual void forces(const ElementParameters&, Real dt_previous, TileView&) const = 0;

@@ -185,12 +185,16 @@ Tiles::Tiles(const Model& model, Diagnostics& diagnostics) {
   partial.resize(node.size());
   std::vector<int> at(partial_first.begin(), partial_first.end() - 1);
   for (int k = 0; k < int(node.size()); ++k) partial[at[node[k]]++] = k;
+  for (int i = 0; i < int(tiles.size()); ++i)
+    if (classes[tiles[i].tile_class].kernel->nodal_pressure()) nodal_tiles_.push_back(i);
+  nodal_pressure_.build(*this);
   initialise(model);
 }
 
 void Tiles::initialise(const Model& model) {
   mass_.assign(model.nodes.size(), 0);
   inertia_.assign(model.nodes.size(), 0);
+  node_mass.assign(node.size(), 0);
   std::vector<NodeRecord> nodes;
   std::vector<SpinRecord> spins;
   for (Tile& t : tiles) {
@@ -225,7 +229,10 @@ void Tiles::initialise(const Model& model) {
         x[a] = model.nodes.x[global[a]];
       }
       c.kernel->lump(c.parameters, x, h, orientation[i], m, j);
-      for (int a = 0; a < N; ++a) mass_[global[a]] += m[a], inertia_[global[a]] += j[a];
+      for (int a = 0; a < N; ++a) {
+        mass_[global[a]] += m[a], inertia_[global[a]] += j[a];
+        node_mass[t.node_first + index[a * block_size + i % block_size]] += m[a];
+      }
     }
     TileView view;
     view.count = t.count;
@@ -284,23 +291,45 @@ Scratch& scratch(int count) {
 }
 }  // namespace
 
+TileView Tiles::view_of(const Tile& t, const NodeRecord* nodes, const SpinRecord* spins) {
+  TileView view;
+  view.count = t.count;
+  view.connectivity = connectivity.data() + t.connectivity;
+  view.state = state_.data() + t.state;
+  view.nodes = nodes, view.spins = spins;
+  view.force = force.data() + t.node_first;
+  std::fill_n(view.force, t.node_count, ForceRecord{});
+  if (any_rotations) {
+    view.moment = moment.data() + t.node_first;
+    std::fill_n(view.moment, t.node_count, ForceRecord{});
+  }
+  return view;
+}
+
+// volume rates of nodal-pressure tetrahedra to their nodes
+void Tiles::nodal_rates(State& state, Team& team) {
+  team.for_each(int(nodal_tiles_.size()), [&](int i, int) {
+    const Tile& t = tiles[nodal_tiles_[i]];
+    const TileClass& c = classes[t.tile_class];
+    Scratch& s = scratch(t.node_count);
+    fill_nodes(state, t, s.nodes.data(), nullptr);
+    TileView view = view_of(t, s.nodes.data(), nullptr);
+    c.kernel->nodal_rates(c.parameters, Real(state.dt_previous), view);
+  });
+  nodal_pressure_.advance(*this, state.dt_previous, team);
+}
+
 void Tiles::forces(State& state, Team& team) {
+  if (!nodal_tiles_.empty()) nodal_rates(state, team);
   team.for_each(int(tiles.size()), [&](int i, int) {
     Tile& t = tiles[i];
     const TileClass& c = classes[t.tile_class];
     Scratch& s = scratch(t.node_count);
-    const bool rotations = c.kernel->rotations();
-    fill_nodes(state, t, s.nodes.data(), rotations ? s.spins.data() : nullptr);
-    TileView view;
-    view.count = t.count;
-    view.connectivity = connectivity.data() + t.connectivity;
-    view.state = state_.data() + t.state;
-    view.nodes = s.nodes.data(), view.spins = s.spins.data();
-    view.force = force.data() + t.node_first;
-    std::fill_n(view.force, t.node_count, ForceRecord{});
-    if (any_rotations) {
-      view.moment = moment.data() + t.node_first;
-      std::fill_n(view.moment, t.node_count, ForceRecord{});
+    fill_nodes(state, t, s.nodes.data(), c.kernel->rotations() ? s.spins.data() : nullptr);
+    TileView view = view_of(t, s.nodes.data(), s.spins.data());
+    if (c.kernel->nodal_pressure()) {
+      view.node_rate = nodal_pressure_.rate(t.node_first);
+      view.node_pressure = nodal_pressure_.pressure(t.node_first);
     }
     if (record_steps) view.element_time_step = steps.data() + t.step;
     c.kernel->forces(c.parameters, Real(state.dt_previous), view);
@@ -368,6 +397,7 @@ void Tiles::save(std::ostream& out) const {
   const std::uint64_t n = state_.size();
   out.write(reinterpret_cast<const char*>(&n), sizeof n);
   out.write(reinterpret_cast<const char*>(state_.data()), std::streamsize(n * sizeof(Real)));
+  nodal_pressure_.save(out);
 }
 
 void Tiles::load(std::istream& in) {
@@ -375,6 +405,7 @@ void Tiles::load(std::istream& in) {
   in.read(reinterpret_cast<char*>(&n), sizeof n);
   if (n != state_.size()) throw std::runtime_error("restart file does not belong to this deck: element history differs");
   in.read(reinterpret_cast<char*>(state_.data()), std::streamsize(n * sizeof(Real)));
+  nodal_pressure_.load(in);
 }
 
 }  // namespace fabrica

@@ -10,6 +10,7 @@
 #include "model/model.h"
 #include "model/state.h"
 #include "solver/kernel.h"
+#include "solver/nodal_pressure.h"
 
 namespace fabrica {
 
@@ -65,6 +66,7 @@ class Tiles {
   std::vector<Tile> tiles;
   std::vector<int> element;               // element index in its family, tile by tile
   std::vector<int> node;                  // global node of each tile node
+  std::vector<double> node_mass;          // what the tile's elements give to it, parallel to `node`
   std::vector<std::uint16_t> connectivity;
   AlignedVector<Real> state_;
   AlignedVector<ForceRecord> force;       // partials, parallel to `node`
@@ -81,9 +83,11 @@ class Tiles {
   void add_into(std::vector<double>& mass, std::vector<double>& inertia) const;
   void initialise(const Model& model);
   void fill_nodes(const State& state, const Tile& tile, NodeRecord* nodes, SpinRecord* spins) const;
-  std::vector<float> thickness_;  // 4 per element in tile order; shells only, else empty
-  std::vector<Vec3d> orientation_;
+  TileView view_of(const Tile& tile, const NodeRecord* nodes, const SpinRecord* spins);
+  void nodal_rates(State& state, Team& team);
   std::vector<double> mass_, inertia_;
+  std::vector<int> nodal_tiles_;
+  NodalPressure nodal_pressure_;
 };
 
 // Lumped masses of elements of rigid parts, which have no tiles.

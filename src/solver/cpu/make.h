@@ -29,25 +29,15 @@ void read_solid_point(StateView<Real> s, ElementReadout& out) {
   if constexpr (M::can_fail) out.alive = double(s.load(P::alive));
 }
 
-// Calls make(law) for the law whose keyword is the material's and whose families hold Family.
+// Calls make(law) for the law of a material card that may be used in Family.
 template <unsigned Family, class Make>
 std::unique_ptr<Kernel> make_for_law(const char* family_name, const Material& material,
                                      const Parameters& parameters, const Parameters* eos, Make make) {
   std::unique_ptr<Kernel> kernel;
-  bool known = false;
-  for_each_material([&]<class M>(std::type_identity<M>) {
-    if (material.law != M::keyword) return;
-    known = true;
-    if constexpr ((M::families & Family) != 0) {
-      if constexpr (requires { M::from(parameters, eos); })
-        kernel = make(M::from(parameters, eos));
-      else
-        kernel = make(M::from(parameters));
-    }
-  });
-  if (!known) throw std::invalid_argument("material *" + material.law + " has no law in this program");
-  if (!kernel) throw std::invalid_argument("material *" + material.law + " cannot be used in " + family_name);
-  return kernel;
+  if (with_material<Family>(material.law, parameters, eos, [&](auto law) { kernel = make(law); })) return kernel;
+  if (material_index(material.law, parameters) < 0)
+    throw std::invalid_argument("material *" + material.law + " has no law in this program");
+  throw std::invalid_argument("material *" + material.law + " cannot be used in " + family_name);
 }
 
 }  // namespace fabrica

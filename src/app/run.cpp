@@ -1,0 +1,267 @@
+#include "app/run.h"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "deck/reader.h"
+#include "deck/writer.h"
+#include "model/check.h"
+#include "result/binout.h"
+#include "result/csv_history.h"
+#include "result/d3plot.h"
+#include "result/vtu.h"
+#include "solver/history.h"
+
+namespace fabrica {
+namespace {
+
+volatile std::sig_atomic_t stop_requested = 0;
+void request_stop(int) { stop_requested = 1; }
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
+
+// prints diagnostics of at least a severity; returns how many
+void print(const Diagnostics& d, Severity least) {
+  for (const Diagnostic& x : d.list())
+    if (int(x.severity) >= int(least)) fmt::print(stderr, "{}\n", d.format(x));
+}
+
+// All output files of a run.
+class Output {
+ public:
+  Output(const RunCommand& c, const Simulation& s, double restart_time)
+      : simulation_(s),
+        history_(s),
+        binout_(make<BinoutWriter>(restart_time, c.out + "/binout", s.model().title)),
+        csv_(make<CsvHistoryWriter>(restart_time, c.out + "/csv")) {
+    const Model& m = s.model();
+    D3plotOptions options = d3plot_options(m);
+    options.rigid_walls = int(m.rigid_walls.size());
+    const ResultMesh mesh = result_mesh(m);
+    d3plot_ = restart_time > 0 ? std::make_unique<D3plotWriter>(c.out + "/d3plot", mesh, options, restart_time)
+                               : std::make_unique<D3plotWriter>(c.out + "/d3plot", mesh, options);
+    if (c.vtu) vtu_ = std::make_unique<VtuSeriesWriter>(c.out + "/animation.pvd", m);
+    for (const HistoryDatabase& d : history_.databases()) {
+      next_.push_back(first_after(restart_time, d.interval));
+      binout_->add(d);
+      csv_->add(d);
+    }
+    const auto i = m.output.interval.find("d3plot");
+    plot_interval_ = i != m.output.interval.end() && i->second > 0 ? i->second : s.end_time() / 20;
+    next_plot_ = first_after(restart_time, plot_interval_);
+  }
+
+  bool wants(double t) const {
+    if (last_) return true;
+    for (double n : next_)
+      if (t >= n * (1 - 1e-12)) return true;
+    return t >= next_plot_ * (1 - 1e-12);
+  }
+  void want_last() { last_ = true; }
+  void sample() {
+    const double t = simulation_.state().time;
+    for (std::size_t i = 0; i < next_.size(); ++i)
+      if (last_ || t >= next_[i] * (1 - 1e-12)) {
+        const HistorySample sample = history_.sample(int(i));
+        binout_->write(int(i), sample);
+        csv_->write(int(i), sample);
+        while (next_[i] <= t * (1 + 1e-12)) next_[i] += history_.databases()[i].interval;
+      }
+    if (last_ || t >= next_plot_ * (1 - 1e-12)) {
+      const AnimationState a = animation_state(simulation_);
+      d3plot_->write(a);
+      if (vtu_) vtu_->write(a);
+      while (next_plot_ <= t * (1 + 1e-12)) next_plot_ += plot_interval_;
+    }
+  }
+  void flush() {
+    binout_->flush();
+    csv_->flush();
+  }
+
+ private:
+  template <class Writer, class... Args>
+  static std::unique_ptr<Writer> make(double restart_time, Args... args) {
+    return restart_time > 0 ? std::make_unique<Writer>(args..., restart_time) : std::make_unique<Writer>(args...);
+  }
+  static double first_after(double t, double interval) {
+    return t > 0 ? (std::floor(t / interval * (1 + 1e-12)) + 1) * interval : 0;
+  }
+
+  const Simulation& simulation_;
+  History history_;
+  std::unique_ptr<BinoutWriter> binout_;
+  std::unique_ptr<CsvHistoryWriter> csv_;
+  std::unique_ptr<D3plotWriter> d3plot_;
+  std::unique_ptr<VtuSeriesWriter> vtu_;
+  std::vector<double> next_;
+  double plot_interval_ = 0, next_plot_ = 0;
+  bool last_ = false;
+};
+
+void progress(const Simulation& s, double started_at, double wall) {
+  const State& st = s.state();
+  const double done = (st.time - started_at) / (s.end_time() - started_at);
+  const double left = done > 0 ? wall * (1 - done) / done : 0;
+  const TimeStepOwner o = s.time_step_owner();
+  fmt::print("t {:.5g} of {:.5g}  cycle {}  dt {:.4g} ({} {} part {})  energy ratio {:.5f}  hourglass {:.1f} %  "
+             "added mass {:.2f} %  left {:.0f} s\n",
+             st.time, s.end_time(), st.cycle, st.dt, o.family, o.element, o.part, st.energy.ratio(),
+             st.energy.internal != 0 ? 100 * st.energy.hourglass / st.energy.internal : 0,
+             s.physical_mass() > 0 ? 100 * s.added_mass() / s.physical_mass() : 0, left);
+  std::fflush(stdout);
+}
+
+nlohmann::ordered_json summary(const Simulation& s, double wall, std::int64_t first_cycle) {
+  const State& st = s.state();
+  const Energies& e = st.energy;
+  const double updates = double(st.cycle - first_cycle) * s.elements();
+  nlohmann::ordered_json j;
+  j["ending"] = s.ending_text();
+  j["time"] = st.time;
+  j["cycles"] = st.cycle;
+  j["elements"] = s.elements();
+  j["element_updates"] = updates;
+  j["wall_time"] = wall;
+  j["updates_per_second"] = wall > 0 ? updates / wall : 0;
+  j["kinetic_energy"] = e.kinetic;
+  j["internal_energy"] = e.internal;
+  j["hourglass_energy"] = e.hourglass;
+  j["contact_energy"] = e.contact;
+  j["contact_friction_energy"] = e.contact_friction;
+  j["rigid_wall_energy"] = e.rigid_wall;
+  j["damping_energy"] = e.damping;
+  j["discrete_energy"] = e.discrete;
+  j["joint_energy"] = e.joint;
+  j["external_work"] = e.external_work;
+  j["total_energy"] = e.total();
+  j["energy_ratio"] = e.ratio();
+  j["energy_error"] = e.ratio() - 1;
+  j["added_mass"] = s.added_mass();
+  j["added_mass_percent"] = s.physical_mass() > 0 ? 100 * s.added_mass() / s.physical_mass() : 0;
+  j["hash"] = fmt::format("{:016x}", s.state_hash());
+  return j;
+}
+
+// what a run checks about itself; each line is a finding
+std::vector<std::string> findings(const Simulation& s) {
+  std::vector<std::string> list;
+  const Energies& e = s.state().energy;
+  const double scale = std::max({std::abs(e.internal), std::abs(e.kinetic), std::abs(e.initial)});
+  if (std::abs(e.ratio() - 1) > 0.02)
+    list.push_back(fmt::format("energy ratio {:.4f} is off by more than 2 %", e.ratio()));
+  if (e.hourglass > 0.05 * std::max(e.internal, 0.01 * scale))
+    list.push_back(fmt::format("hourglass energy is {:.1f} % of internal energy (bound 5 %)",
+                               100 * e.hourglass / std::max(e.internal, 1e-300)));
+  if (e.contact < -0.01 * scale) list.push_back("sliding energy is negative by more than 1 %");
+  if (s.physical_mass() > 0 && s.added_mass() > 0.01 * s.physical_mass())
+    list.push_back(fmt::format("added mass is {:.1f} % (bound 1 %)", 100 * s.added_mass() / s.physical_mass()));
+  return list;
+}
+
+void print_summary(const nlohmann::ordered_json& j) {
+  fmt::print("summary\n");
+  for (const auto& [key, value] : j.items()) fmt::print("{}: {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
+}
+
+}  // namespace
+
+int run_command(const RunCommand& c) {
+  Diagnostics diagnostics;
+  const auto read_start = Clock::now();
+  std::unique_ptr<Model> model = read_deck(c.deck, diagnostics);
+  const int unsupported = diagnostics.count(Severity::unsupported);
+  print(diagnostics, Severity::warning);
+  if (!model || diagnostics.has_errors()) return 1;
+  if (unsupported > 0 && !c.allow_unsupported) {
+    fmt::print(stderr, "fabrica: {} unsupported keywords or fields would change the physics. `fabrica check` lists them; "
+                       "--allow-unsupported runs without them\n", unsupported);
+    return 2;
+  }
+  std::filesystem::create_directories(c.out);
+  const std::size_t printed = diagnostics.list().size();
+  RunOptions options;
+  options.threads = c.threads > 0 ? c.threads : int(std::thread::hardware_concurrency());
+  options.end_time = c.until;
+  Simulation simulation(*model, options, diagnostics);
+  for (std::size_t i = printed; i < diagnostics.list().size(); ++i)
+    fmt::print(stderr, "{}\n", diagnostics.format(diagnostics.list()[i]));
+  if (diagnostics.has_errors()) return 1;
+  if (!c.restart.empty()) simulation.load(c.restart);
+  const double started_at = simulation.state().time;
+  const std::int64_t first_cycle = simulation.state().cycle;
+  if (!c.quiet)
+    fmt::print("{}: {} nodes, {} elements, {} threads, ready in {:.2f} s\n", c.deck, model->nodes.size(),
+               simulation.elements(), options.threads, seconds_since(read_start));
+
+  Output output(c, simulation, started_at);
+  const Sampler sampler{[&](double t) { return output.wants(t); }, [&] { output.sample(); }};
+  std::signal(SIGINT, request_stop);
+  std::signal(SIGTERM, request_stop);
+  const auto start = Clock::now();
+  auto last_line = start;
+  double next_restart = c.restart_interval > 0 ? started_at + c.restart_interval : 1e300;
+  while (simulation.ending() == Ending::running && !stop_requested) {
+    simulation.step(sampler);
+    if (simulation.state().time >= next_restart) {
+      simulation.save(fmt::format("{}/restart_{:.6g}", c.out, simulation.state().time));
+      next_restart += c.restart_interval;
+    }
+    if (!c.quiet && simulation.state().cycle % 20 == 0 && seconds_since(last_line) > 5) {
+      last_line = Clock::now();
+      progress(simulation, started_at, seconds_since(start));
+    }
+  }
+  if (stop_requested) simulation.stop("stopped by a signal");
+  const double wall = seconds_since(start);
+  const bool sound = simulation.ending() != Ending::negative_volume && simulation.ending() != Ending::not_a_number;
+  if (sound) simulation.save(c.out + "/restart");
+  output.want_last();
+  simulation.sample_now(sampler);
+  output.flush();
+
+  const auto list = findings(simulation);
+  auto j = summary(simulation, wall, first_cycle);
+  j["findings"] = list;
+  std::ofstream(c.out + "/summary.json") << j.dump(2) << "\n";
+  for (const auto& f : list) fmt::print("check: {}\n", f);
+  j.erase("findings");
+  print_summary(j);
+  if (stop_requested) return 130;
+  return sound && simulation.ending() != Ending::time_step_too_small ? 0 : 3;
+}
+
+int check_command(const CheckCommand& c) {
+  Diagnostics diagnostics;
+  std::unique_ptr<Model> model = read_deck(c.deck, diagnostics);
+  CheckReport report;
+  if (model) {
+    report = check_model(*model, diagnostics);
+    if (!diagnostics.has_errors()) {
+      Simulation simulation(*model, {}, diagnostics);
+      if (!diagnostics.has_errors()) fmt::print("{}", simulation.contacts().initial_report().text());
+    }
+    if (!c.write.empty()) {
+      std::ofstream out(c.write);
+      write_deck(*model, out);
+      if (!out) {
+        fmt::print(stderr, "fabrica: cannot write {}\n", c.write);
+        return 1;
+      }
+    }
+  }
+  fmt::print("{}", format_check(report, diagnostics));
+  if (diagnostics.has_errors() || !model) return 1;
+  return diagnostics.count(Severity::unsupported) > 0 ? 2 : 0;
+}
+
+}  // namespace fabrica

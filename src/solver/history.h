@@ -1,0 +1,46 @@
+#pragma once
+// Time-history databases of a run: which exist, what they hold, and their values at t(n).
+// Names and units as LS-DYNA users know them (docs/manual/guide.md); all values in the deck's units.
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "model/output.h"
+#include "solver/simulation.h"
+
+namespace fabrica {
+
+class History {
+ public:
+  // The databases that the model asks for, with their intervals.
+  explicit History(const Simulation& simulation);
+
+  const std::vector<HistoryDatabase>& databases() const { return databases_; }
+  // Values of a database now; call while the simulation samples.
+  HistorySample sample(int database) const;
+
+ private:
+  using Fill = std::function<void(std::vector<std::vector<double>>&)>;
+  HistoryDatabase* add(const std::string& path, const std::string& request);
+  void add_glstat();
+  void add_matsum();
+  void add_nodout();
+  void add_elout();
+  void add_rbdout();
+  void add_deforc();
+  void add_jntforc();
+  void add_rwforc();
+  void add_rcforc();
+  void add_sleout();
+  void add_spcforc();
+  void add_secforc();
+
+  const Simulation& simulation_;
+  std::vector<HistoryDatabase> databases_;
+  std::vector<Fill> fills_;
+};
+
+// The animation state at t(n); call while the simulation samples.
+AnimationState animation_state(const Simulation& simulation);
+
+}  // namespace fabrica
