@@ -9,7 +9,10 @@
 // so that a rigid rotation of finite size leaves no strain.
 // Projection: the rigid motion (a, b) that fits the corner velocities best is taken out of (v, w):
 //   b = J^-1 sum r x v,  J = sum (r.r I - r r^T),  v' = v - a - b x r,  w' = w - b                          (4)
-// and the forces pass through the transpose: f = f' - mean f' - (J^-1 t) x r, t = sum (r x f' + m').
+//   then the drilling rate about the corner's own normal p:  w" = w' - (w'.p) p                            (5)
+// and the forces pass through the transpose: m' = m" - (m".p) p,  f = f' - mean f' - (J^-1 t) x r,
+// t = sum (r x f' + m'). Facets of a curved surface can hand on only moments across their own normals; with (5)
+// the corner normal, which neighbours share, takes that place.
 // Sources: Belytschko, Lin, Tsay 1984; Rankin and Nour-Omid 1988 (projectors); dt: Hallquist, theory manual.
 #include <type_traits>
 
@@ -289,5 +292,38 @@ struct RigidProjection {
     for (int a = 0; a < N; ++a) f[a] -= L(1.0 / N) * mean + cross(b, r[a]);
   }
 };
+
+// Drilling of the corners of a quadrilateral and its removal, equation (5).
+template <class L>
+struct DrillProjection {
+  Vec3<L> p[4];
+
+  FABRICA_FN explicit DrillProjection(const Vec3<L> (&x)[4]) {
+    Vec3<L> side[4];
+    for (int a = 0; a < 4; ++a) side[a] = x[(a + 1) & 3] - x[a];
+    for (int a = 0; a < 4; ++a) {
+      const Vec3<L> n = cross(side[(a + 3) & 3], side[a]);
+      p[a] = (L(1.0) / sqrt(max(dot(n, n), L(1e-30)))) * n;
+    }
+  }
+  FABRICA_FN void remove(Vec3<L> (&w)[4]) const {
+    for (int a = 0; a < 4; ++a) w[a] -= dot(w[a], p[a]) * p[a];
+  }
+};
+
+// Corner motion without rigid motion and drilling. It is taken out about the mid-step corners, where a finite
+// rotation is exactly v = b x r.
+template <class L>
+FABRICA_FN void project_motion(const Corners<L, 4>& c, const L& dt, Vec3<L> (&v)[4], Vec3<L> (&w)[4]) {
+  Vec3<L> x[4];
+  for (int a = 0; a < 4; ++a) v[a] = c.v[a], w[a] = c.w[a], x[a] = c.x[a] - (L(0.5) * dt) * c.v[a];
+  RigidProjection<L, 4>(x).remove(v, w);
+  DrillProjection<L>(c.x).remove(w);
+}
+template <class L>
+FABRICA_FN void project_forces(const Corners<L, 4>& c, CornerForces<L, 4>& out) {
+  DrillProjection<L>(c.x).remove(out.m);
+  RigidProjection<L, 4>(c.x).transpose(out.f, out.m);
+}
 
 }  // namespace fabrica

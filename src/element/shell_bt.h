@@ -62,10 +62,10 @@ struct ShellBTOf {
     const L dt = L(dt_previous);
     const Geometry<L> g(c.x);
     const bool project = p.projection || p.formulation == 10;
-    const Motion<L> whole(g.axes, c.v, c.w);
-    const Motion<L> motion = project ? projected_motion(g, c, dt) : whole;
+    const Motion<L> motion = project ? projected_motion(g, c, dt) : Motion<L>(g.axes, c.v, c.w);
+    const ShellGradient<L> gradient = gradient_of(g, motion);
     ShellStrain<L> e;
-    almansi(gradient_of(g, whole), dt, e);
+    almansi(gradient, dt, e);
     curvature(p, g, motion, dt, e);
 
     L h = s.load(thickness_field);
@@ -85,9 +85,9 @@ struct ShellBTOf {
     if (p.stiffness_damping != 0) totals.damping = mid_area * r.alive * damp_shell(p, e, h, dt, step, r);
 
     Hourglass<L> q;
-    totals.hourglass = hourglass(p, g, motion, gradient_of(g, motion), h, root_area, dt, r.alive, s, q);
+    totals.hourglass = hourglass(p, g, motion, gradient, h, root_area, dt, r.alive, s, q);
     corner_forces(p, g, r, q, out);
-    if (project) RigidProjection<L, 4>(c.x).transpose(out.f, out.m);
+    if (project) project_forces(c, out);
   }
 
   // Geometry in the frame; the diagonals lie in the plane, so their z vanish.
@@ -133,12 +133,10 @@ struct ShellBTOf {
     }
   };
 
-  // The rigid motion is taken out about the mid-step corners, where a finite rotation is exactly v = b x r.
   template <class L>
   FABRICA_FN static Motion<L> projected_motion(const Geometry<L>& g, const Corners<L, 4>& c, const L& dt) {
-    Vec3<L> x[4], v[4], w[4];
-    for (int a = 0; a < 4; ++a) v[a] = c.v[a], w[a] = c.w[a], x[a] = c.x[a] - (L(0.5) * dt) * c.v[a];
-    RigidProjection<L, 4>(x).remove(v, w);
+    Vec3<L> v[4], w[4];
+    project_motion(c, dt, v, w);
     return Motion<L>(g.axes, v, w);
   }
 
