@@ -51,10 +51,10 @@ test: build ## all tests, with kernels in float and in double
 	@ctest --preset double
 
 bench: build ## speed of the kernels and of whole models
-	@$(FABRICA) run cases/tube-crush/tube-crush.k --out $(OUT)/bench --threads $(THREADS)
+	@$(FABRICA) bench --threads $(THREADS)
 
 validate: build ## run every case that has a case.toml and compare
-	@$(FABRICA) validate cases
+	@python3 tools/validate.py --program $(FABRICA) --out $(OUT)/cases --threads $(THREADS)
 
 format: ## lay out the sources by .clang-format
 	@git ls-files 'src/*.h' 'src/*.cpp' 'src/*.cu' 'tests/*.cpp' 'bench/*.cpp' | xargs -r clang-format -i
