@@ -62,7 +62,7 @@ FABRICA_FN L j2_newton(const J2Modes<L>& modes, const Yield& yield) {
   return x * L(1 / modes.cb);
 }
 
-// The same where the slope of the yield stress is unbounded at small rates: regula falsi (Illinois) on
+// The same where the slope of the yield stress is unbounded at small rates: regula falsi (Anderson and Bjorck 1973) on
 // cb lambda = bound root^4, 0 <= root <= 1; bound follows from the static yield stress, the least that Y can be.
 template <bool plane, int passes, class L, class Yield>
 FABRICA_FN L j2_bracket(const J2Modes<L>& modes, const L& q_trial, const L& static_yield, const Yield& yield) {
@@ -76,16 +76,19 @@ FABRICA_FN L j2_bracket(const J2Modes<L>& modes, const L& q_trial, const L& stat
     const L q = sqrt(modes.template square<plane>(x, fall));
     return q - yield(per_x * x * q, hardening);
   };
-  L low = L(0.0), high = L(1.0), root = L(1.0);
-  L at_low = q_trial - static_yield, at_high = residual(high);
+  // a and b enclose the root, b is the newer
+  L a = L(0.0), at_a = q_trial - static_yield, b = L(1.0), at_b = residual(b), root = b;
   for (int i = 0; i < passes; ++i) {
-    root = clamp(high - at_high * (high - low) / min(at_high - at_low, L(-1e-30)), low, high);
+    const L rise = at_b - at_a;
+    const auto flat = rise == L(0.0);
+    root = select(flat, b, clamp(b - at_b * (b - a) / select(flat, L(1.0), rise), min(a, b), max(a, b)));
     const L at = residual(root);
-    const auto positive = at > L(0.0);
-    // the end that stays twice is weighted down, or the secant creeps
-    const L kept_high = select(positive, L(0.5) * at_high, at), kept_low = select(positive, at, L(0.5) * at_low);
-    low = select(positive, root, low), high = select(positive, high, root);
-    at_low = kept_low, at_high = kept_high;
+    // an end that stays is weighted down, or the secant creeps
+    const auto crossed = ((at > L(0.0)) & (at_b <= L(0.0))) | ((at <= L(0.0)) & (at_b > L(0.0)));
+    const L weight = L(1.0) - at / select(at_b == L(0.0), L(1.0), at_b);
+    const L kept = at_a * select(weight > L(0.0), weight, L(0.5));
+    a = select(crossed, b, a), at_a = select(crossed, at_b, kept);
+    b = root, at_b = at;
   }
   const L second = root * root;
   return select(q_trial > static_yield, bound * second * second, L(0.0)) * L(1 / modes.cb);

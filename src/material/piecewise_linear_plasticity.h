@@ -124,7 +124,7 @@ struct PiecewiseLinearPlasticity {
     const L per_time = L(1.0) / max(point.dt, L(1e-30));
     if (rate_form == 1) {
       const L least = viscoplastic_yield(ep, L(0.0));
-      return j2_bracket<plane, 12>(trial.modes, trial.q, least, [&](const L& dep, L&) {
+      return j2_bracket<plane, 10>(trial.modes, trial.q, least, [&](const L& dep, L&) {
         return viscoplastic_yield(ep + dep, dep * per_time);
       });
     }

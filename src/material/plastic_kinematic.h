@@ -108,7 +108,7 @@ struct PlasticKinematic {
   template <bool plane, class L>
   FABRICA_FN L viscous_flow(const J2Trial<L>& trial, const L& Y, const L& dt) const {
     const L scale = L(1.0) / (max(dt, L(1e-30)) * L(rate_constant));
-    return j2_bracket<plane, 12>(trial.modes, trial.q, Y, [&](const L& dep, L&) {
+    return j2_bracket<plane, 10>(trial.modes, trial.q, Y, [&](const L& dep, L&) {
       return Y + L(isotropic) * dep + L(yield_stress) * pow(dep * scale, L(rate_exponent));
     });
   }

@@ -1,0 +1,109 @@
+#include "material/law_test.h"
+
+namespace fabrica {
+namespace {
+
+// A = .4, B = .1, nu = .495; reference: solution of the compressible uniaxial problem, 3.13869 (J = 1.00349), 1.4726,
+// -2.0868; tolerances: half a unit of the last digit given
+TEST_CASE("027: uniaxial tension and compression") {
+  const auto m = MooneyRivlin::from(TestParameters{{"ro", 1e-6}, {"a", .4}, {"b", .1}, {"pr", .495}});
+  double lateral = 0;
+  CHECK(near(free_uniaxial(m, 2, lateral), 3.13869, 2e-6));
+  CHECK(near(2 * lateral * lateral, 1.00349, 3e-6));
+  CHECK(near(free_uniaxial(m, 1.5, lateral), 1.4726, 4e-5));
+  CHECK(near(free_uniaxial(m, 0.5, lateral), -2.0868, 4e-5));
+  // towards incompressibility: 2 (lam^2 - 1/lam) (A + B/lam) = 3.150
+  const auto stiff = MooneyRivlin::from(TestParameters{{"ro", 1e-6}, {"a", .4}, {"b", .1}, {"pr", .49999}});
+  CHECK(near(free_uniaxial(stiff, 2, lateral), 3.150, 2e-5));
+}
+
+TEST_CASE("027: the constants are recovered from a curve they made") {
+  TestParameters p{{"ro", 1e-6}, {"pr", .495}, {"sgl", 10}, {"sw", 2}, {"st", 3}};
+  TestParameters::Points points;
+  for (double lam = 0.6; lam < 3; lam += 0.1)
+    points.push_back({10 * (lam - 1), 6 * 2 * (lam - 1 / (lam * lam)) * (0.4 + 0.1 / lam)});
+  p.set_curve("lcid", points);
+  const auto m = MooneyRivlin::from(p);
+  CHECK(near(m.A, 0.4, 2e-6));
+  CHECK(near(m.B, 0.1, 1e-5));
+}
+
+// mu = .63, .0012, -.01, alpha = 1.3, 5, -2: nominal stress sum mu (lam^(a-1) - lam^(-a/2-1)) of the incompressible rubber
+TEST_CASE("077: uniaxial nominal stress") {
+  const auto m = Ogden::from(TestParameters{{"ro", 1e-6},  {"pr", .49999}, {"mu1", .63},   {"mu2", .0012},
+                                            {"mu3", -.01}, {"alpha1", 1.3}, {"alpha2", 5}, {"alpha3", -2}});
+  const double reference[3] = {.401617, .602722, 1.207971}, stretch[3] = {1.5, 2, 4};
+  for (int i = 0; i < 3; ++i) {
+    double lateral = 0;
+    const double sigma = free_uniaxial(m, stretch[i], lateral);
+    CHECK(near(sigma * lateral * lateral, reference[i], 1e-3));
+    // the deviatoric difference does not depend on K: tau_1 - tau_2 at isochoric stretches
+    const Sym3<double> s = total_stress(m, diagonal(stretch[i], 1 / std::sqrt(stretch[i]), 1 / std::sqrt(stretch[i])));
+    CHECK(near((s.xx - s.yy) / stretch[i], reference[i], 2e-6));
+  }
+}
+
+TEST_CASE("077: a curve fit is refused in clear words") {
+  const TestParameters p{{"ro", 1e-6}, {"pr", .49}, {"n", 2}, {"mu1", 1}, {"alpha1", 2}};
+  CHECK_THROWS_AS(Ogden::from(p), std::invalid_argument);
+}
+
+// A held simple shear: the extra stress fades as sum G_i e^(-beta_i t) x its value after a fast step.
+TEST_CASE("077: viscous branches fade with their own rates") {
+  TestParameters p{{"ro", 1e-6}, {"pr", .49}, {"mu1", 1}, {"alpha1", 2}};
+  p.add_row({{"gi", .3}, {"betai", .5}}).add_row({{"gi", .1}, {"betai", 2}});
+  const auto m = ViscousOgden::from(p);
+  auto state = fresh_state<ViscousOgden>();
+  Mat3<double> F = identity3<double>();
+  F.a[0][1] = 1e-4;
+  auto fast = fresh_point(m, 1e-9);
+  const double start = m.stress(F, fast, state).xy;
+  CHECK(near(start, 1e-4 * (1 + 0.3 + 0.1), 1e-5));
+  auto later = fresh_point(m, 1.5);
+  const double end = m.stress(F, later, state).xy;
+  CHECK(near(end, 1e-4 * (1 + 0.3 * std::exp(-0.75) + 0.1 * std::exp(-3.0)), 1e-5));
+}
+
+// sigma = (1/J) dW/dF F^T, by central differences of the energy
+template <class M>
+void check_energy_derivative(const M& m) {
+  std::mt19937 random(4);
+  for (int k = 0; k < 50; ++k) {
+    const Mat3<double> F = random_gradient(random, 0.3);
+    const double J = det(F), h = 1e-5;
+    const Sym3<double> s = total_stress(m, F);
+    const double sigma[3][3] = {{s.xx, s.xy, s.zx}, {s.xy, s.yy, s.yz}, {s.zx, s.yz, s.zz}};
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        Mat3<double> up = identity3<double>(), down = up;
+        up.a[i][j] += h, down.a[i][j] -= h;
+        const Mat3<double> A = up * F, B = down * F;
+        const double slope = (m.energy(A, det(A)) - m.energy(B, det(B))) / (2 * h);
+        CHECK(std::abs(slope / J - sigma[i][j]) < 1e-6 * (largest(s) + 0.1));
+      }
+  }
+}
+
+TEST_CASE("027 and 077: stress is the derivative of the energy") {
+  const Samples samples;
+  check_energy_derivative(MooneyRivlin::from(samples.mooney));
+  check_energy_derivative(Ogden::from(samples.ogden));
+}
+
+// float lanes at strains of 1e-4: the linear answer stays good to float accuracy
+TEST_CASE("027 and 077: small strains do not cancel in float") {
+  const Samples samples;
+  auto check = [](const auto& m) {
+    using M = std::decay_t<decltype(m)>;
+    Mat3<float> F = identity3<float>();
+    F.a[0][1] = 1e-4f;
+    auto state = fresh_state<M, float>();
+    auto point = fresh_point<float>(m, 1);
+    CHECK(near(m.stress(F, point, state).xy, 1e-4 * m.elastic().shear, 1e-5));
+  };
+  check(MooneyRivlin::from(samples.mooney));
+  check(Ogden::from(samples.ogden));
+}
+
+}  // namespace
+}  // namespace fabrica
