@@ -16,6 +16,8 @@ class Card {
   Card() = default;
   // An empty card of a keyword; every field blank. Throws std::invalid_argument for an unknown name.
   explicit Card(std::string_view keyword);
+  // An empty card of a schema, for the reader.
+  explicit Card(const KeywordSchema& keyword) : schema(&keyword) { prepare(); }
 
   const KeywordSchema* schema = nullptr;
   std::vector<std::string> options;  // "TITLE", "ID", "MPP" as found
@@ -63,6 +65,7 @@ class Card {
   int columns_ = 0;
 
  private:
+  void prepare();
   int index_of(std::string_view field) const;
 };
 

@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 namespace fabrica {
@@ -66,10 +67,18 @@ class Vocabulary {
   // known names near a misspelt one, best first
   std::vector<std::string> suggest(std::string_view keyword, int count = 3) const;
   const std::vector<KeywordSchema>& all() const { return keywords_; }
+  // A vocabulary of its own from .kw text, for tests.
+  explicit Vocabulary(std::string_view text);
+  // what is wrong with the .kw texts, "line N: ..."; empty in a sound build
+  const std::vector<std::string>& problems() const { return problems_; }
 
  private:
   Vocabulary();
+  void index();
+  int canonical(std::string_view name) const;
   std::vector<KeywordSchema> keywords_;
+  std::unordered_map<std::string, int> names_;
+  std::vector<std::string> problems_;
 };
 
 }  // namespace fabrica

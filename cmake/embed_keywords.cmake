@@ -1,0 +1,12 @@
+# Writes the .kw files of FOLDER as string literals into the C++ file OUTPUT, one literal a file.
+file(GLOB files ${FOLDER}/*.kw)
+list(SORT files)
+set(text "// made from the .kw files by cmake/embed_keywords.cmake\n#include \"model/schema_text.h\"\n\n")
+string(APPEND text "namespace fabrica {\n\nconst std::vector<std::string_view>& embedded_keyword_texts() {\n")
+string(APPEND text "  static const std::vector<std::string_view> texts = {\n")
+foreach(path ${files})
+  file(READ ${path} content)
+  string(APPEND text "R\"__kw__(${content})__kw__\",\n")
+endforeach()
+string(APPEND text "  };\n  return texts;\n}\n\n}  // namespace fabrica\n")
+file(WRITE ${OUTPUT} "${text}")
