@@ -7,6 +7,7 @@
 
 #include "element/discrete.h"
 #include "solver/discrete_elements.h"
+#include "solver/rigid_bodies.h"
 
 namespace fabrica {
 namespace {
@@ -182,6 +183,18 @@ void DiscreteElements::add_beams(const Model& model, const State& state, Diagnos
       b.triad = orthonormal_rows(line, row_of(b.triad, 1));
     b.rest = b.triad * line;
     beam_.push_back(b);
+  }
+}
+
+void DiscreteElements::use_bodies(const RigidBodies& bodies) {
+  for (int i = 0; i < bodies.size(); ++i) {
+    const RigidBody& b = bodies[i];
+    const Vec3d& I = b.motion.inertia;
+    const double smallest = std::min({I.x, I.y, I.z});
+    for (std::size_t k = 0; k < b.nodes.size() && b.motion.mass > 0; ++k) {
+      const double turn = smallest > 0 ? dot(b.r[k], b.r[k]) / smallest : 0.0;
+      use_mass(b.nodes[k], i, 1 / (1 / b.motion.mass + turn), smallest);
+    }
   }
 }
 

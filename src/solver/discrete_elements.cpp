@@ -1,6 +1,7 @@
 #include "solver/discrete_elements.h"
 
 #include <cmath>
+#include <map>
 
 #include "element/discrete.h"
 
@@ -39,11 +40,11 @@ double DiscreteElements::inertia_of(const State& state, int local) const {
   return n.inertia > 0 ? n.inertia : state.spins[std::size_t(n.node)].inertia;
 }
 
-void DiscreteElements::use_mass(int node, double mass, double inertia) {
+void DiscreteElements::use_mass(int node, int body, double mass, double inertia) {
   const int local = node_to_local_[std::size_t(node)];
   if (local < 0) return;
-  nodes_[std::size_t(local)].mass = mass;
-  nodes_[std::size_t(local)].inertia = inertia;
+  Node& n = nodes_[std::size_t(local)];
+  n.body = body, n.mass = mass, n.inertia = inertia;
 }
 
 // A stop at the deflection limits: pushes back without ever pulling, so that the contact is nearly
@@ -216,17 +217,13 @@ void DiscreteElements::account(State& state) const {
   state.energy.discrete -= 0.5 * state.dt * power(state);
 }
 
-// Bound of an element whose nodes share their mass among all elements in proportion to stiffness:
-// w^2 = K1/m1 + K2/m2 with the nodes' sums K, and the same for damping and for rotations.
-double DiscreteElements::time_step(const State& state) const {
-  struct Sum {
-    double k = 0, c = 0, kr = 0, cr = 0;
-  };
-  std::vector<Sum> sum(nodes_.size());
+// K/m, C/m and the same for rotations at every node; nodes of one body get the sum over the body.
+std::vector<DiscreteElements::Rate> DiscreteElements::rates(const State& state) const {
+  std::vector<Rate> rate(nodes_.size());
   const auto add = [&](int local, double k, double c, double kr, double cr) {
     if (local < 0) return;
-    Sum& s = sum[std::size_t(local)];
-    s.k += k, s.c += c, s.kr += kr, s.cr += cr;
+    Rate& r = rate[std::size_t(local)];
+    r.k += k, r.c += c, r.kr += kr, r.cr += cr;
   };
   for (const Spring& s : spring_) {
     if (s.law < 0) continue;
@@ -241,17 +238,34 @@ double DiscreteElements::time_step(const State& state) const {
     }
     for (const int l : {b.local1, b.local2}) add(l, k, c, kr, cr);
   }
+  std::map<int, Rate> body;
+  for (std::size_t l = 0; l < rate.size(); ++l) {
+    Rate& r = rate[l];
+    const double m = mass_of(state, int(l)), j = inertia_of(state, int(l));
+    r = {m > 0 ? r.k / m : 0, m > 0 ? r.c / m : 0, j > 0 ? r.kr / j : 0, j > 0 ? r.cr / j : 0};
+    if (nodes_[l].body < 0) continue;
+    Rate& sum = body[nodes_[l].body];
+    sum.k += r.k, sum.c += r.c, sum.kr += r.kr, sum.cr += r.cr;
+  }
+  for (std::size_t l = 0; l < rate.size(); ++l)
+    if (nodes_[l].body >= 0) rate[l] = body[nodes_[l].body];
+  return rate;
+}
+
+// Bound of an element whose nodes share their mass among all elements in proportion to stiffness:
+// w^2 = K1/m1 + K2/m2 with the nodes' sums K, and the same for damping and for rotations.
+double DiscreteElements::time_step(const State& state) const {
+  const std::vector<Rate> rate = rates(state);
   double dt = INFINITY;
   const auto bound = [&](int l1, int l2) {
-    double w2 = 0, g = 0, w2r = 0, gr = 0;
+    Rate sum;
     for (const int l : {l1, l2}) {
       if (l < 0) continue;
-      const Sum& s = sum[std::size_t(l)];
-      const double m = mass_of(state, l), j = inertia_of(state, l);
-      if (m > 0) w2 += s.k / m, g += 0.5 * s.c / m;
-      if (j > 0) w2r += s.kr / j, gr += 0.5 * s.cr / j;
+      const Rate& r = rate[std::size_t(l)];
+      sum.k += r.k, sum.c += r.c, sum.kr += r.kr, sum.cr += r.cr;
     }
-    dt = std::min({dt, spring_time_step(w2, g), spring_time_step(w2r, gr)});
+    dt = std::min(
+        {dt, spring_time_step(sum.k, 0.5 * sum.c), spring_time_step(sum.kr, 0.5 * sum.cr)});
   };
   for (const Spring& s : spring_)
     if (s.law >= 0) bound(s.local1, s.local2);

@@ -24,6 +24,8 @@
 
 namespace fabrica {
 
+class RigidBodies;
+
 class DiscreteElements {
  public:
   // Takes the elements of the model at the state's positions. Parts with a law or an option that is
@@ -42,8 +44,13 @@ class DiscreteElements {
   // Largest stable step [time], from the tangents of the last forces() call; infinity without
   // elements.
   double time_step(const State& state) const;
-  // Mass and inertia that the time step and DAMPF take for a node that a rigid body moves.
-  void use_mass(int node, double mass, double inertia);
+  // Tells the time step and DAMPF what a rigid body puts against a pull at one of its nodes,
+  // instead of the node's own mass: for bodies call it once masses are known. Nodes of one body
+  // number count together.
+  void use_mass(int node, int body, double mass, double inertia);
+  // The same for all nodes of all bodies: 1/m = 1/M + r^2/I with r from the centre and I the
+  // smallest inertia.
+  void use_bodies(const RigidBodies& bodies);
 
   // By index into Model::discretes: force or moment (tension positive), elongation or twist,
   // whether it still acts.
@@ -108,7 +115,13 @@ class DiscreteElements {
   };
   struct Node {
     int node = -1;
-    double mass = 0, inertia = 0;  // of a rigid body if not zero
+    int body = -1;
+    double mass = 0, inertia = 0;  // at a node of a body
+  };
+
+  // of a node: sums of stiffness and damping over mass, for translation and rotation
+  struct Rate {
+    double k = 0, c = 0, kr = 0, cr = 0;
   };
 
   void add_springs(const Model& model, const State& state, Diagnostics& diagnostics);
@@ -124,6 +137,7 @@ class DiscreteElements {
   void move_triad(const State& state, Beam& b) const;
   Vec3d spin(const State& state, int node) const;
   double power(const State& state) const;
+  std::vector<Rate> rates(const State& state) const;
   template <class Io>
   void stream(Io&& io);
 

@@ -190,6 +190,21 @@ TEST_CASE("spring chain: the time step is safe and sharp") {
   CHECK(e.time_step(b.state) == doctest::Approx(2 / (2 * std::sqrt(9.0))).epsilon(1e-12));
 }
 
+// Two springs on one body: the body's rates add up, whatever its nodes weigh.
+TEST_CASE("springs on a body: the time step takes the body's mass") {
+  Bench b;
+  b.node({0, 0, 0}, 1e-6), b.node({0, 0, 0}, 1e-6);
+  b.model.sd_orientations.push_back({1, 0, {1, 0, 0}});
+  const int part = b.part("MAT_SPRING_ELASTIC", {{"k", 8}});
+  b.spring(part, 0, -1, 0), b.spring(part, 1, -1, 0);
+  DiscreteElements e = b.build(1);
+  Team team(1);
+  e.forces(b.model, b.state, team);
+  CHECK(e.time_step(b.state) == doctest::Approx(2 / std::sqrt(8 / 1e-6)));
+  e.use_mass(0, 5, 4, 1), e.use_mass(1, 5, 4, 1);
+  CHECK(e.time_step(b.state) == doctest::Approx(2 / std::sqrt(16.0 / 4)));
+}
+
 // The discrete identity KE(n) = 1/2 m v(n-1/2).v(n+1/2) and the accounted work close to round-off
 // for any forces.
 TEST_CASE("discrete elements: energy closes to round-off") {
