@@ -1,0 +1,190 @@
+#include "solver/contact.h"
+
+#include <algorithm>
+#include <istream>
+#include <ostream>
+#include <string>
+
+namespace fabrica {
+namespace {
+
+bool is_tied(ContactKind k) {
+  return k == ContactKind::tied_nodes_to_surface || k == ContactKind::tied_surface_to_surface ||
+         k == ContactKind::tied_shell_edge_to_surface;
+}
+
+bool is_single(ContactKind k) {
+  return k == ContactKind::automatic_single_surface || k == ContactKind::automatic_general;
+}
+
+bool is_two_way(ContactKind k) {
+  return k == ContactKind::automatic_surface_to_surface || k == ContactKind::surface_to_surface;
+}
+
+// options that are read but act differently here
+void check_options(const Model& model, const Contact& c, Diagnostics& diagnostics) {
+  auto warn = [&](const char* name, const char* field, const std::string& message) {
+    diagnostics.warning(name, c.where, "CONTACT", field,
+                        "contact " + std::to_string(c.id) + ": " + message);
+  };
+  if (c.soft == 2) warn("contact-soft-2", "soft", "SOFT=2 acts as SOFT=1, node to segment");
+  if (c.kind == ContactKind::automatic_general)
+    warn("contact-general-edges", "", "beams and free edges do not touch each other, only surfaces do");
+  if (c.ignore == 0 && model.controls.contact_ignore == 0 && !is_tied(c.kind))
+    warn("contact-ignore-0", "ignore",
+         "nodes that penetrate at the start stay where they are; their penetration is not pushed back");
+  for (const ContactSide* s : {&c.a, &c.b})
+    for (int p : s->parts)
+      if (model.parts[p].contact && (model.parts[p].contact->fs != 0 || model.parts[p].contact->fd != 0) && c.fs == -1)
+        return warn("contact-part-friction", "fs", "friction by part (FS=-1) is not used");
+}
+
+}  // namespace
+
+Contacts::Contacts(const Model& model, State& state, const ContactInput& input,
+                   Diagnostics& diagnostics)
+    : tied_(std::make_unique<TiedNodes>(model)), initial_dt_(input.initial_dt) {
+  fixed_.resize(model.contacts.size());
+  if (model.contacts.empty()) return;
+  const SurfaceSource source(model, input);
+  for (int c = 0; c < int(model.contacts.size()); ++c) {
+    const Contact& contact = model.contacts[c];
+    fixed_[c].contact = c;
+    if (!is_tied(contact.kind)) continue;
+    const ContactSurface a = source.build(contact, contact.a, false);
+    const ContactSurface b = source.build(contact, contact.b, true);
+    for (const ContactNode& n : a.nodes) fixed_[c].mass_a += state.nodes[n.node].mass;
+    for (const ContactNode& n : b.nodes) fixed_[c].mass_b += state.nodes[n.node].mass;
+    tied_->add(c, a, b, state, diagnostics);
+  }
+  tied_->finish(state);
+  carriers_ = tied_->carriers();
+  for (int c = 0; c < int(model.contacts.size()); ++c) {
+    if (is_tied(model.contacts[c].kind)) continue;
+    if (model.contacts[c].kind == ContactKind::force_transducer)
+      add_transducer(model, c, source);
+    else
+      add_contact(model, c, source, diagnostics);
+  }
+  for (std::size_t p = 0; p < passes_.size(); ++p) {
+    stable_time_step_ = std::min(stable_time_step_, passes_[p]->stable_time_step(state));
+    Resultant& r = fixed_[passes_[p]->contact_index()];
+    double mass = 0, other = 0;
+    for (const ContactNode& n : passes_[p]->tracked().nodes) mass += state.nodes[n.node].mass;
+    for (const ContactNode& n : passes_[p]->reference().nodes) other += state.nodes[n.node].mass;
+    const bool single = is_single(model.contacts[passes_[p]->contact_index()].kind);
+    if (!second_pass_[p]) r.mass_a = mass, r.mass_b = single ? 0 : other;
+  }
+  report_.tied_nodes = tied_->count();
+  report_.untied_nodes = tied_->untied();
+}
+
+void Contacts::add_contact(const Model& model, int index, const SurfaceSource& source,
+                           Diagnostics& diagnostics) {
+  const Contact& contact = model.contacts[index];
+  check_options(model, contact, diagnostics);
+  auto add = [&](ContactSurface tracked, ContactSurface reference, bool second) {
+    passes_.push_back(std::make_unique<ContactPass>(model, contact, index, std::move(tracked),
+                                                    std::move(reference), carriers_));
+    second_pass_.push_back(second);
+  };
+  ContactSurface a = source.build(contact, contact.a, false);
+  if (is_single(contact.kind)) return add(a, a, false);
+  ContactSurface b = source.build(contact, contact.b, true);
+  if (b.segments.empty())
+    diagnostics.warning("contact-no-segments", contact.where, "CONTACT", "msid",
+                        "contact " + std::to_string(contact.id) + ": the reference side has no segments",
+                        "Check the set or part of the reference side");
+  add(a, b, false);
+  if (is_two_way(contact.kind) && !a.segments.empty()) add(std::move(b), std::move(a), true);
+}
+
+void Contacts::add_transducer(const Model& model, int index, const SurfaceSource& source) {
+  const Contact& contact = model.contacts[index];
+  Transducer t{index, std::vector<char>(model.nodes.size(), 0), {}};
+  for (const ContactNode& n : source.build(contact, contact.a, false).nodes) t.in_a[n.node] = 1;
+  if (contact.b.kind != ContactSide::Kind::none) {
+    t.in_b.assign(model.nodes.size(), 0);
+    for (const ContactNode& n : source.build(contact, contact.b, true).nodes) t.in_b[n.node] = 1;
+  }
+  transducers_.push_back(std::move(t));
+}
+
+void Contacts::forces(const Model&, State& state, Team& team) {
+  const double dt = state.dt;
+  // the first forces have no step behind them: stiffness that depends on one takes the expected step
+  for (auto& pass : passes_) pass->forces(state, team, dt > 0 ? dt : initial_dt_);
+  tied_->forces(state);
+  if (!report_complete_) complete_report();
+}
+
+void Contacts::complete_report() {
+  report_complete_ = true;
+  for (const auto& pass : passes_)
+    for (const InitialPenetration& p : pass->initial_penetrations()) report_.worst.push_back(p);
+  report_.penetrating_nodes = int(report_.worst.size());
+  std::stable_sort(report_.worst.begin(), report_.worst.end(),
+                   [](const auto& a, const auto& b) { return a.depth > b.depth; });
+  if (report_.worst.size() > 20) report_.worst.resize(20);
+  if (!report_.worst.empty()) report_.largest_penetration = report_.worst[0].depth;
+}
+
+void Contacts::account(State& state) {
+  for (auto& pass : passes_) pass->account(state);
+  tied_->account(state);
+}
+
+void Contacts::transfer_tied_forces(State& state, Team&) { tied_->transfer_forces(state); }
+void Contacts::place_tied_nodes(State& state, Team&) { tied_->place_nodes(state); }
+
+std::vector<Contacts::Resultant> Contacts::resultants() const {
+  std::vector<Resultant> list = fixed_;
+  for (std::size_t p = 0; p < passes_.size(); ++p) {
+    const ContactPass& pass = *passes_[p];
+    Resultant& r = list[pass.contact_index()];
+    Vec3d sum{0, 0, 0};
+    for (const auto& chunk : pass.active_forces())
+      for (const ContactForce& f : chunk) sum += f.normal + f.friction;
+    // a surface against itself has no sides: the sums cancel
+    if (&pass.tracked() != &pass.reference() && r.mass_b != 0) {
+      r.side_a += second_pass_[p] ? -sum : sum;
+      r.side_b += second_pass_[p] ? sum : -sum;
+    }
+    (second_pass_[p] ? r.energy_b : r.energy_a) += pass.energy();
+    r.friction_energy += pass.friction_energy();
+  }
+  for (Resultant& r : list)
+    if (r.contact >= 0 && tied_->has_ties(r.contact)) {
+      r.side_a = tied_->force_of(r.contact);
+      r.side_b = -r.side_a;
+    }
+  add_to_transducers(list);
+  return list;
+}
+
+void Contacts::add_to_transducers(std::vector<Resultant>& list) const {
+  for (const Transducer& t : transducers_) {
+    Resultant& r = list[t.contact];
+    r.contact = t.contact;
+    for (const auto& pass : passes_)
+      for (const auto& chunk : pass->active_forces())
+        for (const ContactForce& f : chunk) {
+          const int corner = pass->reference().segments[f.segment].node[0];
+          const Vec3d total = f.normal + f.friction;
+          const bool any = t.in_b.empty();
+          if (t.in_a[f.node] && (any || t.in_b[corner])) r.side_a += total, r.side_b -= total;
+          if (t.in_a[corner] && (any || t.in_b[f.node])) r.side_a -= total, r.side_b += total;
+        }
+  }
+}
+
+void Contacts::save(std::ostream& out) const {
+  tied_->save(out);
+  for (const auto& pass : passes_) pass->save(out);
+}
+void Contacts::load(std::istream& in) {
+  tied_->load(in);
+  for (auto& pass : passes_) pass->load(in);
+}
+
+}  // namespace fabrica
