@@ -26,4 +26,10 @@ inline double curve_integral(std::span<const double> x, std::span<const double> 
   return sum + 0.5 * (value + curve_value(x, y, b)) * (b - from);
 }
 
+// Whether something is alive in the step [t, t + dt]; times that differ by rounding count as equal.
+inline bool alive(double birth, double death, double t, double dt) {
+  const double slack = 1e-6 * dt;
+  return t >= birth - slack && t < death - slack;
+}
+
 }  // namespace fabrica

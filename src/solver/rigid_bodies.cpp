@@ -173,10 +173,10 @@ void RigidBodies::code_conditions(int cmo, int con1, int con2, int local_system,
 bool RigidBodies::motion_condition(const State& state, int index, int local,
                                    GroundCondition& g) const {
   const PrescribedMotion& m = model_.prescribed_motions[index];
-  if (state.time < m.birth || state.time >= m.death) return false;
+  if (!alive(m.birth, m.death, state.time, state.dt)) return false;
   const RigidBody& b = bodies_[part_to_body_[m.part]];
   const Curve& curve = model_.curves[m.curve];
-  const double t = state.time - m.birth;
+  const double t = std::max(0.0, state.time - m.birth);
   g = {};
   g.body = local;
   g.rotation = m.dof >= 5;

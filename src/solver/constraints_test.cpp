@@ -1,0 +1,393 @@
+// Supports, prescribed nodal motions, rigid walls, loads, initial conditions, damping.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "solver/damping.h"
+#include "solver/initial_conditions.h"
+#include "solver/loads.h"
+#include "solver/mechanism_test.h"
+#include "solver/node_constraints.h"
+#include "solver/rigid_walls.h"
+
+using namespace fabrica;
+using mechanism::Mechanism;
+
+namespace {
+
+// free nodes under everything this layer knows, in the order of a run
+struct Run {
+  Mechanism& m;
+  Loads loads;
+  NodeConstraints constraints;
+  RigidWalls walls;
+  MassDamping damping;
+  double first_kinetic = 0, last_kinetic = 0;
+  std::vector<Vec3d> extra;  // forces that a test adds to nodes
+  explicit Run(Mechanism& m_)
+      : m(m_),
+        loads(m_.model, *m_.bodies, m_.diagnostics),
+        constraints(m_.model, m_.state, m_.diagnostics),
+        walls(m_.model, m_.state, m_.diagnostics),
+        damping(m_.model, *m_.bodies),
+        extra(m_.model.nodes.size(), Vec3d{}) {}
+  void step(double dt) {
+    State& s = m.state;
+    s.dt = dt;
+    std::vector<Vec3d> before;
+    for (const NodeMotion& n : s.nodes) before.push_back(n.v);
+    loads.forces(s, *m.bodies);
+    walls.forces(s, m.team);
+    for (int i = 0; i < m.model.nodes.size(); ++i)
+      s.force[i] = extra[i] + s.interaction.take(std::size_t(i));
+    loads.body_forces(s, *m.bodies, m.team);
+    m.bodies->gather(s, m.team);
+    for (int i = 0; i < m.model.nodes.size(); ++i) {
+      if (s.owner[i] != NodeOwner::free) continue;
+      s.nodes[i].v += (s.mean_dt() / s.nodes[i].mass) * s.force[i];
+      if (!s.spins.empty()) s.spins[i].w += (s.mean_dt() / s.spins[i].inertia) * s.moment[i];
+    }
+    damping.apply(s, *m.bodies, m.team);
+    constraints.apply(s);
+    walls.apply(s, m.team);
+    m.bodies->integrate(s, m.joints.get());
+    // kinetic energy at t(n): 1/2 m v- . v+
+    last_kinetic = 0;
+    for (int i = 0; i < m.model.nodes.size(); ++i)
+      if (s.owner[i] == NodeOwner::free) {
+        // the half step before the start is the mirror of the one after it
+        const Vec3d v = s.cycle == 0 ? 2.0 * before[i] - s.nodes[i].v : before[i];
+        last_kinetic += 0.5 * s.nodes[i].mass * dot(v, s.nodes[i].v);
+      }
+    if (s.cycle == 0) first_kinetic = last_kinetic;
+    for (int i = 0; i < m.model.nodes.size(); ++i)
+      if (s.owner[i] == NodeOwner::free) s.nodes[i].x += dt * s.nodes[i].v;
+    m.bodies->place_nodes(s, m.team);
+    s.time += dt, s.dt_previous = dt, ++s.cycle;
+  }
+};
+
+RigidWall plane(const Vec3d& tail, const Vec3d& normal) {
+  RigidWall w;
+  w.tail = tail, w.head = tail + normal, w.all_nodes = true;
+  return w;
+}
+
+}  // namespace
+
+TEST_CASE("free fall is exact") {
+  Mechanism m;
+  m.node({0, 0, 0});
+  BodyLoad g;
+  g.direction = {0, 0, 1}, g.scale = 9.81e-3;
+  m.model.body_loads.push_back(g);
+  m.start({2.0});
+  Run run(m);
+  const double dt = 1e-3;
+  for (int i = 0; i < 100000; ++i) run.step(dt);
+  const double t = 100000 * dt;
+  CHECK(std::abs(m.state.nodes[0].x.z / (-0.5 * 9.81e-3 * t * t) - 1) < 1e-12);
+  run.step(dt);  // books the work up to t
+  CHECK(run.last_kinetic - run.first_kinetic ==
+        doctest::Approx(m.state.energy.external_work).epsilon(1e-11));
+}
+
+TEST_CASE("supports hold their directions in a local system and report their force") {
+  Mechanism m;
+  const int a = m.node({0, 0, 0}), b = m.node({1, 0, 0});
+  const double c = std::cos(0.3), s = std::sin(0.3);
+  CoordinateSystem cs;
+  cs.axes = {{{c, s, 0}, {-s, c, 0}, {0, 0, 1}}};
+  m.model.coordinate_systems.push_back(cs);
+  SinglePointConstraint spc;
+  spc.nodes = {a}, spc.local_system = 0, spc.fixed = {true, false, false, false, false, true};
+  m.model.constraints.push_back(spc);
+  m.model.nodes.translation_code[b] = 6;  // z and x
+  m.start({2, 1}, 0.1);
+  Run run(m);
+  run.extra[a] = {3, 1, 2};
+  run.extra[b] = {1, 2, 3};
+  m.state.moment[a] = {0, 1, 5};
+  for (int i = 0; i < 10; ++i) run.step(0.01);
+  const Vec3d e{c, s, 0};
+  CHECK(std::abs(dot(e, m.state.nodes[a].v)) < 1e-15);
+  const Vec3d r = run.constraints.reactions()[0].force;
+  CHECK(norm(r + dot(e, run.extra[a]) * e) < 1e-13);
+  CHECK(norm(run.constraints.reactions()[0].moment - Vec3d{0, 0, -5}) < 1e-12);
+  CHECK(m.state.spins[a].w.z == 0);
+  CHECK(m.state.spins[a].w.y > 0);
+  CHECK(m.state.nodes[b].x.x == 1);
+  CHECK(m.state.nodes[b].x.z == 0);
+  CHECK(norm(run.constraints.reactions()[1].force - Vec3d{-1, 0, -3}) < 1e-14);
+  CHECK(m.state.energy.external_work == doctest::Approx(0).epsilon(1e-14));
+}
+
+TEST_CASE(
+    "prescribed nodal motions end at the integrals of their curves, and a freed node flies on") {
+  for (const int kind : {0, 1, 2}) {
+    Mechanism m;
+    const int a = m.node({0.5, 0, 0});
+    PrescribedMotion pm;
+    pm.nodes = {a}, pm.dof = 1, pm.kind = kind, pm.birth = 0.1, pm.death = 1.095;
+    pm.curve = m.curve({0, 0.35, 1}, {0, 0.7, 0.2});
+    m.model.prescribed_motions.push_back(pm);
+    m.start({2.0});
+    Run run(m);
+    for (int i = 0; i < 110; ++i) run.step(0.01);
+    const double area = 0.5 * 0.35 * 0.7 + 0.5 * 0.9 * 0.65, y = 0.7 - 0.5 / 0.65 * 0.645;
+    const double u = m.state.nodes[a].x.x - 0.5, v = m.state.nodes[a].v.x;
+    if (kind == 0) CHECK(u == doctest::Approx(area).epsilon(1e-12));
+    if (kind == 2) CHECK(u == doctest::Approx(0.2).epsilon(1e-12));
+    if (kind == 1)
+      CHECK(v == doctest::Approx(0.5 * 0.35 * 0.7 + 0.5 * (0.7 + y) * 0.645).epsilon(1e-12));
+    const double last = v;
+    for (int i = 0; i < 5; ++i) run.step(0.01);
+    CHECK(m.state.nodes[a].v.x == last);
+    // work of the motion is the kinetic energy it gave
+    CHECK(m.state.energy.external_work == doctest::Approx(0.5 * 2 * last * last).epsilon(1e-11));
+  }
+}
+
+TEST_CASE("a moving wall and the nodes it stops share their momentum") {
+  Mechanism m;
+  const int a = m.node({0, 0, 1}), b = m.node({1, 0, 1.00005});
+  RigidWall w = plane({0, 0, 0}, {0, 0, 1});
+  w.moving = true, w.mass = 10;
+  m.model.rigid_walls.push_back(w);
+  m.start({2, 3});
+  m.state.nodes[a].v = m.state.nodes[b].v = {0, 0, -5};
+  Run run(m);
+  double energy = 0.5 * 5 * 25;
+  for (int i = 0; i < 3000; ++i) run.step(1e-4);
+  const double v = -5 * 5.0 / 15;
+  CHECK(std::abs(m.state.nodes[a].v.z / v - 1) < 1e-12);
+  CHECK(std::abs(m.state.nodes[b].v.z / v - 1) < 1e-12);
+  CHECK(std::abs(run.walls.velocity(0).z / v - 1) < 1e-12);
+  run.step(1e-4);
+  CHECK(std::abs((run.last_kinetic + m.state.energy.rigid_wall) / energy - 1) < 1e-12);
+}
+
+TEST_CASE("a fixed wall stops a node, friction slows it, and energy is accounted for") {
+  for (const double mu : {0.0, 0.3, 1.0}) {
+    Mechanism m;
+    const int a = m.node({0, 0, 0.01});
+    RigidWall w = plane({0, 0, 0}, {0, 0, 2});
+    w.friction = mu;
+    m.model.rigid_walls.push_back(w);
+    BodyLoad g;
+    g.direction = {0, 0, 1}, g.scale = 10;
+    m.model.body_loads.push_back(g);
+    m.start({2.0});
+    m.state.nodes[a].v = {4, 0, -1};
+    Run run(m);
+    for (int i = 0; i < 1000; ++i) {
+      run.step(1e-3);
+      REQUIRE(m.state.nodes[a].x.z >= -1e-12);
+      REQUIRE(std::abs(run.last_kinetic + m.state.energy.rigid_wall - m.state.energy.external_work -
+                       run.first_kinetic) < 1e-11 * run.first_kinetic);
+    }
+    // resting on the wall: its force is the weight
+    CHECK(run.walls.normal_force(0) == doctest::Approx(20).epsilon(1e-9));
+    if (mu == 0) CHECK(m.state.nodes[a].v.x == 4);
+    // the tangential velocity falls by mu times the normal impulse per mass, 1 + g t in total
+    if (mu == 0.3)
+      CHECK(m.state.nodes[a].v.x == doctest::Approx(4 - 0.3 * (1 + 10 * 0.9995)).epsilon(1e-9));
+    if (mu == 1) CHECK(m.state.nodes[a].v.x == 0);
+  }
+}
+
+TEST_CASE("finite, round and driven walls act where they are") {
+  Mechanism m;
+  const int on = m.node({0.5, 0.5, 0.1}), beside = m.node({1.5, 0.5, 0.1}),
+            ball = m.node({5, 0, 2}), pole = m.node({10.1, 3, 2}), piston = m.node({0, 0, 20.2});
+  RigidWall w = plane({0, 0, 0}, {0, 0, 1});
+  w.edge = {1, 0, 0}, w.length_l = 1, w.length_m = 1;
+  m.model.rigid_walls.push_back(w);
+  RigidWall s = plane({5, 0, 0}, {0, 0, 1});
+  s.shape = RigidWall::Shape::sphere, s.radius = 1;
+  m.model.rigid_walls.push_back(s);
+  RigidWall c = plane({10, 0, 0}, {0, 1, 0});
+  c.shape = RigidWall::Shape::cylinder, c.radius = 1, c.length = 5;
+  m.model.rigid_walls.push_back(c);
+  RigidWall d = plane({0, 0, 20}, {0, 0, 1});
+  d.motion_curve = m.curve({0, 1}, {0, 1}), d.motion_option = 1, d.motion_direction = {0, 0, 1};
+  d.all_nodes = false, d.nodes = {piston};
+  m.model.rigid_walls.push_back(d);
+  m.start();
+  for (int n : {on, beside, ball, pole}) m.state.nodes[n].v = {0, 0, -1};
+  Run run(m);
+  for (int i = 0; i < 1000; ++i) {
+    run.step(1e-3);
+    const Vec3d r = m.state.nodes[ball].x - Vec3d{5, 0, 0};
+    REQUIRE(norm(r) > 1 - 1e-9);
+    const Vec3d p = m.state.nodes[pole].x;
+    REQUIRE(std::hypot(p.x - 10, p.z) > 1 - 1e-9);
+  }
+  CHECK(m.state.nodes[on].v.z == 0);
+  CHECK(m.state.nodes[on].x.z >= 0);
+  CHECK(m.state.nodes[beside].x.z == doctest::Approx(-0.9));
+  for (int i = 0; i < 1000; ++i) run.step(1e-3);
+  CHECK(m.state.nodes[pole].v.x > 0);
+  CHECK(run.walls.displacement(3).z == doctest::Approx(1).epsilon(1e-12));
+  CHECK(m.state.nodes[piston].x.z >= 21 - 1e-12);
+}
+
+TEST_CASE("a rigid body bounces off a wall and gets its energy back") {
+  Mechanism m;
+  std::vector<int> nodes;
+  for (int i = 0; i < 8; ++i)
+    nodes.push_back(m.node({double(i & 1), double(i >> 1 & 1), 0.05 + double(i >> 2)}));
+  m.part(nodes);
+  m.model.rigid_walls.push_back(plane({0, 0, 0}, {0, 0, 1}));
+  m.start();
+  m.bodies->set_velocity(0, {0, 0, -1}, {});
+  m.bodies->give_velocity_to_nodes(m.state);
+  Run run(m);
+  for (int i = 0; i < 400; ++i) run.step(1e-3);
+  CHECK((*m.bodies)[0].motion.v.z == doctest::Approx(1).epsilon(0.02));
+  const double kinetic = m.bodies->kinetic_energy();
+  CHECK(kinetic + m.state.energy.rigid_wall == doctest::Approx(4.0).epsilon(1e-9));
+}
+
+TEST_CASE("walls of many nodes give the same bits for any team, and after a restart") {
+  auto build = [](Mechanism& m) {
+    for (int i = 0; i < 5000; ++i)
+      m.node({std::sin(1.3 * i), std::cos(0.7 * i), 0.001 * (i % 97) + 0.0005 * i});
+    RigidWall w = plane({0, 0, 0}, {0.1, 0, 1});
+    w.moving = true, w.mass = 100, w.friction = 0.2, w.velocity = 0.5;
+    m.model.rigid_walls.push_back(w);
+    m.start();
+    for (NodeMotion& n : m.state.nodes) n.v = {0.3 * n.x.y, 0, -2 - n.x.x};
+  };
+  Mechanism a, b, c;
+  build(a), build(b), build(c);
+  Team t1(1), t3(3);
+  RigidWalls wa(a.model, a.state, a.diagnostics), wb(b.model, b.state, b.diagnostics),
+      wc(c.model, c.state, c.diagnostics);
+  auto drive = [](Mechanism& m, RigidWalls& w, Team& t, int steps) {
+    for (int i = 0; i < steps; ++i) {
+      m.state.dt = 1e-3;
+      w.apply(m.state, t);
+      for (NodeMotion& n : m.state.nodes) n.x += 1e-3 * n.v;
+      m.state.dt_previous = 1e-3, m.state.time += 1e-3;
+    }
+  };
+  drive(a, wa, t1, 200), drive(b, wb, t3, 200);
+  std::stringstream data;
+  wa.save(data), wc.load(data);
+  c.state.nodes = a.state.nodes, c.state.energy = a.state.energy;
+  c.state.time = a.state.time, c.state.dt_previous = a.state.dt_previous;
+  drive(a, wa, t1, 200), drive(b, wb, t3, 200), drive(c, wc, t3, 200);
+  REQUIRE(wa.displacement(0).z != 0);
+  CHECK(a.state.energy.rigid_wall == b.state.energy.rigid_wall);
+  CHECK(a.state.energy.rigid_wall == c.state.energy.rigid_wall);
+  for (int i = 0; i < 5000; ++i) {
+    REQUIRE(norm(a.state.nodes[i].x - b.state.nodes[i].x) == 0);
+    REQUIRE(norm(a.state.nodes[i].x - c.state.nodes[i].x) == 0);
+    const Vec3d n = (1 / std::sqrt(1.01)) * Vec3d{0.1, 0, 1};
+    // none has passed the wall, even where chunks were skipped
+    REQUIRE(dot(a.state.nodes[i].x - wa.displacement(0), n) >
+            std::min(0.0, dot(a.model.nodes.x[i], n)) - 1e-9);
+  }
+}
+
+TEST_CASE("nodal loads, followers and pressures do the work they should") {
+  Mechanism m;
+  const int a = m.node({0, 0, 0}), b = m.node({2, 0, 0}), c = m.node({2, 3, 0}),
+            d = m.node({0, 3, 0}), e = m.node({9, 9, 9});
+  const int p = m.part({e});
+  const int curve = m.curve({0, 1}, {1, 3});
+  NodalLoad l;
+  l.nodes = {a}, l.dof = 2, l.curve = curve, l.scale = 2;
+  m.model.nodal_loads.push_back(l);
+  l.nodes = {b}, l.dof = 4, l.curve = -1, l.scale = 5, l.follower = {a, b, c};
+  m.model.nodal_loads.push_back(l);
+  l = {};
+  l.part = p, l.dof = 3, l.scale = 7;
+  m.model.nodal_loads.push_back(l);
+  PressureLoad pr;
+  pr.segments = {{a, b, c, d}}, pr.scale = 4, pr.arrival = 0;
+  m.model.pressure_loads.push_back(pr);
+  m.start();
+  Run run(m);
+  run.step(1e-3);
+  CHECK(norm(m.state.force[a] - Vec3d{0, 2, -6}) < 1e-9);
+  CHECK(norm(m.state.force[b] - Vec3d{0, 0, 5 - 6.0}) < 1e-9);
+  CHECK(norm(m.state.force[d] - Vec3d{0, 0, -6}) < 1e-9);
+  CHECK((*m.bodies)[0].motion.v.z == doctest::Approx(7 * 0.5e-3));
+  for (int i = 0; i < 300; ++i) run.step(1e-3);
+  const double body = 0.5 * std::pow(7 * m.state.time - 7 * 1e-3, 2);
+  CHECK(run.last_kinetic - run.first_kinetic + body ==
+        doctest::Approx(m.state.energy.external_work).epsilon(1e-9));
+}
+
+TEST_CASE("generation gives nodes, spins and bodies one rotation") {
+  Mechanism m;
+  const int a = m.node({1, 0, 0}), b = m.node({0, 2, 0}), c = m.node({0, 0, 3}),
+            d = m.node({1, 1, 1}), f = m.node({2, 2, 2});
+  const int p = m.part({a, b, c, d});
+  InitialVelocity iv;
+  iv.nodes = {a, b, c, d, f}, iv.parts = {p};
+  iv.velocity = {1, 2, 3}, iv.angular_velocity = {0.1, -0.2, 0.4}, iv.about_axis = true,
+  iv.point = {0, 1, 0};
+  for (const bool by_part : {true, false}) {
+    m.model.initial_velocities = {iv};
+    if (!by_part) m.model.initial_velocities[0].parts.clear();
+    m.state = State{};
+    m.start({1, 2, 3, 4, 5}, 0.1);
+    apply_initial_conditions(m.model, m.state, *m.bodies);
+    const RigidBody& body = (*m.bodies)[0];
+    auto v_at = [&](const Vec3d& x) {
+      return iv.velocity + cross(iv.angular_velocity, x - iv.point);
+    };
+    CHECK(norm(body.motion.v - v_at(body.motion.x)) < 1e-14);
+    CHECK(norm(body.motion.w - iv.angular_velocity) < 1e-14);
+    for (int n : {a, b, c, d, f}) {
+      CHECK(norm(m.state.nodes[n].v - v_at(m.model.nodes.x[n])) < 1e-14);
+      CHECK(norm(m.state.spins[n].w - iv.angular_velocity) < 1e-14);
+    }
+  }
+  // a given inertia keeps its velocities unless overridden
+  m.inertia(p, 10, {0, 0, 0}, {1, 2, 3});
+  m.model.parts[p].inertia->velocity = {9, 0, 0};
+  for (const bool override_it : {false, true}) {
+    m.model.initial_velocities = {iv};
+    m.model.initial_velocities[0].override_inertia = override_it;
+    m.state = State{};
+    m.start({1, 2, 3, 4, 5}, 0.1);
+    apply_initial_conditions(m.model, m.state, *m.bodies);
+    const Vec3d v = (*m.bodies)[0].motion.v;
+    CHECK(norm(v - (override_it ? iv.velocity + cross(iv.angular_velocity, -iv.point)
+                                : Vec3d{9, 0, 0})) < 1e-14);
+  }
+}
+
+TEST_CASE("mass damping decays as its formula and books what it takes") {
+  Mechanism m;
+  const int a = m.node({0, 0, 0}), b = m.node({1, 0, 0}), c = m.node({1, 1, 0});
+  m.part({b, c});
+  Damping d;
+  d.value = 3, d.scale = {1, 0.5, 1, 1, 1, 1};
+  m.model.global_damping.push_back(d);
+  m.start({2, 1, 1});
+  m.state.nodes[a].v = {1, 1, 0};
+  m.bodies->set_velocity(0, {2, 0, 0}, {});
+  m.state.dt_previous = 0.01, m.state.cycle = 1;  // in full swing
+  Run run(m);
+  double work0 = 0, e0 = 0;
+  for (int i = 0; i < 200; ++i) {
+    const double body_before = (*m.bodies)[0].motion.v.x;
+    run.step(0.01);
+    const double total =
+        run.last_kinetic + body_before * (*m.bodies)[0].motion.v.x + m.state.energy.damping;
+    if (i == 0) e0 = total, work0 = m.state.energy.damping;
+    REQUIRE(std::abs(total - e0) < 1e-12 * e0);
+  }
+  CHECK(m.state.energy.damping > work0);
+  const double factor = (1 - 0.015) / (1 + 0.015);
+  CHECK(m.state.nodes[a].v.x == doctest::Approx(std::pow(factor, 200)).epsilon(1e-11));
+  CHECK(m.state.nodes[a].v.y ==
+        doctest::Approx(std::pow((1 - 0.0075) / (1 + 0.0075), 200)).epsilon(1e-11));
+  CHECK((*m.bodies)[0].motion.v.x == doctest::Approx(2 * std::pow(factor, 200)).epsilon(1e-11));
+}

@@ -1,0 +1,292 @@
+#include "solver/rigid_walls.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "load/time_curve.h"
+#include "solver/stream.h"
+
+namespace fabrica {
+
+namespace {
+
+constexpr int chunk_nodes = 1024;
+
+int chunk_count(int nodes) { return (nodes + chunk_nodes - 1) / chunk_nodes; }
+
+Vec3d unit(const Vec3d& a) { return norm(a) > 0 ? (1 / norm(a)) * a : Vec3d{0, 0, 1}; }
+
+WallGeometry geometry_of(const RigidWall& w) {
+  WallGeometry g;
+  using Shape = RigidWall::Shape;
+  g.shape = w.shape == Shape::sphere     ? WallShape::sphere
+            : w.shape == Shape::cylinder ? WallShape::cylinder
+            : w.shape == Shape::prism    ? WallShape::prism
+                                         : WallShape::plane;
+  g.origin = w.tail;
+  g.normal = unit(w.head - w.tail);
+  g.radius = w.radius, g.length = w.length;
+  g.length_l = w.length_l, g.length_m = w.length_m;
+  // edge l in the plane of the wall; m completes the triad
+  Vec3d l = w.edge - w.tail;
+  l -= dot(l, g.normal) * g.normal;
+  const bool given = norm(l) > 1e-12 * (norm(w.edge) + norm(w.tail)) && norm(l) > 0;
+  const Vec3d other = std::abs(g.normal.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
+  g.edge_l = given ? unit(l) : unit(cross(cross(g.normal, other), g.normal));
+  g.edge_m = cross(g.normal, g.edge_l);
+  return g;
+}
+
+}  // namespace
+
+RigidWalls::RigidWalls(const Model& model, const State& state, Diagnostics& diagnostics)
+    : model_(model) {
+  std::size_t most = 0;
+  for (int i = 0; i < int(model.rigid_walls.size()); ++i) {
+    const RigidWall& w = model.rigid_walls[i];
+    Wall wall;
+    wall.index = i;
+    wall.geometry = geometry_of(w);
+    auto add = [&](int n) {
+      (state.owner[n] == NodeOwner::rigid ? wall.rigid : wall.free).nodes.push_back(n);
+    };
+    if (w.all_nodes && w.nodes.empty())
+      for (int n = 0; n < model.nodes.size(); ++n) add(n);
+    for (int n : w.nodes) add(n);
+    if (w.moving && !(w.mass > 0))
+      diagnostics.error("rigid-wall-without-mass", {}, "RIGIDWALL_PLANAR_MOVING", "MASS",
+                        "a moving wall needs a mass",
+                        "give a positive mass, or prescribe its motion");
+    if (w.moving) wall.velocity = w.velocity * wall.geometry.normal;
+    wall.free.clearance.assign(chunk_count(int(wall.free.nodes.size())), 0);
+    wall.rigid.clearance.assign(chunk_count(int(wall.rigid.nodes.size())), 0);
+    wall.last.assign(wall.rigid.nodes.size(), {});
+    most = std::max({most, wall.free.clearance.size(), wall.rigid.clearance.size()});
+    walls_.push_back(std::move(wall));
+  }
+  hits_.resize(most);
+  sums_.resize(most);
+}
+
+double RigidWalls::highest_speed(const State& state, Team& team) {
+  const int n = int(state.nodes.size()), chunks = chunk_count(n);
+  std::vector<double> highest(chunks, 0);
+  team.for_each(chunks, [&](int c, int) {
+    double h = 0;
+    for (int i = c * chunk_nodes; i < std::min(n, (c + 1) * chunk_nodes); ++i)
+      h = std::max(h, dot(state.nodes[i].v, state.nodes[i].v));
+    highest[c] = h;
+  });
+  double h = 0;
+  for (double x : highest) h = std::max(h, x);
+  return std::sqrt(h);
+}
+
+WallGeometry RigidWalls::now(const Wall& wall) const {
+  WallGeometry g = wall.geometry;
+  g.origin += wall.displacement;
+  return g;
+}
+
+// Mean velocity over the step of a wall that a curve drives.
+Vec3d RigidWalls::driven_velocity(const Wall& wall, const State& state) const {
+  const RigidWall& w = model_.rigid_walls[wall.index];
+  const Curve& c = model_.curves[w.motion_curve];
+  const Vec3d n = norm(w.motion_direction) > 0 ? unit(w.motion_direction) : wall.geometry.normal;
+  const double t = state.time, end = t + state.dt;
+  if (w.motion_option == 0) return (curve_integral(c.x, c.y, t, end) / state.dt) * n;
+  return ((curve_value(c.x, c.y, end) - dot(wall.displacement, n)) / state.dt) * n;
+}
+
+// Whether the node is behind the wall after the step; clearance: lower bound of its distance at
+// t(n).
+bool RigidWalls::find(const Wall& wall, const WallGeometry& g, const State& state, int node,
+                      double& clearance, Hit& hit) const {
+  const NodeMotion& a = state.nodes[node];
+  clearance = std::min(clearance, wall_clearance(g, a.x));
+  const Vec3d move = state.dt * (a.v - wall.velocity);
+  const WallPoint next = wall_point(g, a.x + move);
+  if (next.distance >= 0 || !next.on_wall) return false;
+  const WallPoint start = wall_point(g, a.x);
+  const bool deep = start.distance < 0;
+  // a finite plane does not catch what came from behind
+  const bool finite = g.shape == WallShape::plane && (g.length_l > 0 || g.length_m > 0);
+  if (finite && start.distance < -(norm(move) + 1e-9 * norm(a.x - g.origin))) return false;
+  const double vn = dot(a.v - wall.velocity, next.normal);
+  const double added = std::max(-vn, deep ? 0.0 : -next.distance / state.dt);
+  if (added <= 0) return false;
+  const Vec3d before = a.v - (state.mean_dt() * a.inverse_mass) * state.force[node];
+  hit = {node, next.normal, before, added, deep};
+  return true;
+}
+
+void RigidWalls::detect(Wall& wall, const WallGeometry& g, State& state, Team& team, double speed) {
+  const double reach = state.dt * (speed + norm(wall.velocity));
+  Side& side = wall.free;
+  team.for_each(int(side.clearance.size()), [&](int c, int) {
+    hits_[c].clear();
+    sums_[c] = {};
+    side.clearance[c] -= reach;
+    if (side.clearance[c] > 0) return;
+    double clearance = 1e300;
+    const int end = std::min(int(side.nodes.size()), (c + 1) * chunk_nodes);
+    for (int i = c * chunk_nodes; i < end; ++i) {
+      const int node = side.nodes[i];
+      Hit hit;
+      if (state.owner[node] == NodeOwner::rigid) continue;
+      if (!find(wall, g, state, node, clearance, hit) || state.owner[node] != NodeOwner::free)
+        continue;
+      hits_[c].push_back(hit);
+      sums_[c].mass += state.nodes[node].mass;
+      sums_[c].momentum += state.nodes[node].mass * dot(state.nodes[node].v, g.normal);
+    }
+    // a margin for rounding
+    side.clearance[c] = clearance - reach - 1e-9 * std::abs(clearance);
+  });
+}
+
+void RigidWalls::push(Wall& wall, State& state, Team& team, double old_speed) {
+  const RigidWall& w = model_.rigid_walls[wall.index];
+  // a heavy wall took up momentum: all touching nodes get its new velocity
+  const double gain = dot(wall.velocity, wall.geometry.normal) - old_speed;
+  const int chunks = int(wall.free.clearance.size());
+  team.for_each(chunks, [&](int c, int) {
+    Sums& s = sums_[c];
+    for (const Hit& h : hits_[c]) {
+      NodeMotion& node = state.nodes[h.node];
+      const double dvn = w.moving ? h.added + gain * dot(wall.geometry.normal, h.normal) : h.added;
+      Vec3d dv = dvn * h.normal;
+      const Vec3d rel = node.v - wall.velocity;
+      const Vec3d slip = rel - dot(rel, h.normal) * h.normal;
+      const double size = norm(slip);
+      if (w.friction > 0 && size > 0) {
+        const double cut = w.friction >= 1 ? size : std::min(size, w.friction * std::max(dvn, 0.0));
+        dv -= (cut / size) * slip;
+      }
+      node.v += dv;
+      s.impulse -= node.mass * dv;
+      s.before += node.mass * dot(dv, h.v_before);
+      s.after += node.mass * dot(dv, node.v);
+    }
+  });
+  const double rate = 1 / state.mean_dt();
+  for (int c = 0; c < chunks; ++c) {
+    wall.force += rate * sums_[c].impulse;
+    state.energy.rigid_wall -= 0.5 * state.dt_previous * rate * sums_[c].before;
+    wall.pending -= 0.5 * state.dt * rate * sums_[c].after;
+  }
+}
+
+void RigidWalls::apply(State& state, Team& team, double max_speed) {
+  if (walls_.empty()) return;
+  const double speed = max_speed >= 0 ? max_speed : highest_speed(state, team);
+  for (Wall& wall : walls_) {
+    const RigidWall& w = model_.rigid_walls[wall.index];
+    state.energy.rigid_wall += wall.pending;
+    wall.pending = 0;
+    wall.force = wall.penalty;
+    const Vec3d n = wall.geometry.normal;
+    if (w.motion_curve >= 0) wall.velocity = driven_velocity(wall, state);
+    if (w.moving) wall.velocity += (state.mean_dt() * dot(wall.penalty, n) / w.mass) * n;
+    const WallGeometry g = now(wall);
+    const bool alive = state.time >= w.birth && state.time < w.death;
+    if (alive) {
+      detect(wall, g, state, team, speed);
+      const double old_speed = dot(wall.velocity, n);
+      if (w.moving) {
+        double mass = w.mass, momentum = w.mass * old_speed;
+        for (std::size_t c = 0; c < wall.free.clearance.size(); ++c)
+          mass += sums_[c].mass, momentum += sums_[c].momentum;
+        wall.velocity = (momentum / mass) * n;
+        // every touching node takes exactly the common velocity
+        for (std::size_t c = 0; c < wall.free.clearance.size(); ++c)
+          for (Hit& h : hits_[c]) h.added = old_speed - dot(state.nodes[h.node].v, n);
+      }
+      push(wall, state, team, old_speed);
+    }
+    wall.displacement += state.dt * wall.velocity;
+  }
+}
+
+void RigidWalls::penalty(Wall& wall, State& state, Team& team, double speed) {
+  const RigidWall& w = model_.rigid_walls[wall.index];
+  const double scale =
+      model_.controls.rigid_wall_penalty > 0 ? model_.controls.rigid_wall_penalty : 1;
+  const double dt = state.dt > 0 ? state.dt : state.dt_previous;
+  // the stiffness follows the step only when it must, so that stored energy is given back
+  if (wall.stiffness_dt == 0 || dt < 0.95 * wall.stiffness_dt) wall.stiffness_dt = dt;
+  const double factor = dt > 0 ? 0.1 * scale / (wall.stiffness_dt * wall.stiffness_dt) : 0;
+  const double reach = state.dt_previous * (speed + norm(wall.velocity));
+  const WallGeometry g = now(wall);
+  Side& side = wall.rigid;
+  team.for_each(int(side.clearance.size()), [&](int c, int) {
+    Sums& s = sums_[c];
+    s = {};
+    side.clearance[c] -= reach;
+    if (side.clearance[c] > 0) return;
+    double clearance = 1e300;
+    const int end = std::min(int(side.nodes.size()), (c + 1) * chunk_nodes);
+    for (int i = c * chunk_nodes; i < end; ++i) {
+      const NodeMotion& node = state.nodes[side.nodes[i]];
+      clearance = std::min(clearance, wall_clearance(g, node.x));
+      const WallPoint p = wall_point(g, node.x);
+      Vec3d f{};
+      if (p.distance < 0 && p.on_wall) {
+        const double normal = -factor * node.mass * p.distance;
+        f = normal * p.normal;
+        const Vec3d rel = node.v - wall.velocity, slip = rel - dot(rel, p.normal) * p.normal;
+        const double size = norm(slip);
+        if (size > 0 && w.friction > 0)
+          f -= (std::min(w.friction * normal, 0.1 * node.mass * size / wall.stiffness_dt) / size) *
+               slip;
+        state.interaction.add(std::size_t(side.nodes[i]), f);
+      }
+      s.before += dot(wall.last[i] + f, node.v);
+      s.impulse -= f;
+      wall.last[i] = f;
+    }
+    side.clearance[c] = clearance - 1e-9 * std::abs(clearance);
+  });
+  wall.penalty = {};
+  for (std::size_t c = 0; c < side.clearance.size(); ++c) {
+    wall.penalty += sums_[c].impulse;
+    state.energy.rigid_wall -= 0.5 * state.dt_previous * sums_[c].before;
+  }
+}
+
+void RigidWalls::forces(State& state, Team& team, double max_speed) {
+  double speed = max_speed;
+  for (Wall& wall : walls_) {
+    const RigidWall& w = model_.rigid_walls[wall.index];
+    wall.penalty = {};
+    if (wall.rigid.nodes.empty() || state.time < w.birth || state.time >= w.death) continue;
+    if (speed < 0) speed = highest_speed(state, team);
+    penalty(wall, state, team, speed);
+  }
+}
+
+void RigidWalls::save(std::ostream& out) const {
+  for (const Wall& w : walls_) {
+    for (const Vec3d* v : {&w.displacement, &w.velocity, &w.force, &w.penalty})
+      write_value(out, *v);
+    write_vector(out, w.free.clearance);
+    write_vector(out, w.rigid.clearance);
+    write_vector(out, w.last);
+    write_value(out, w.stiffness_dt);
+    write_value(out, w.pending);
+  }
+}
+
+void RigidWalls::load(std::istream& in) {
+  for (Wall& w : walls_) {
+    for (Vec3d* v : {&w.displacement, &w.velocity, &w.force, &w.penalty}) read_value(in, *v);
+    read_vector(in, w.free.clearance);
+    read_vector(in, w.rigid.clearance);
+    read_vector(in, w.last);
+    read_value(in, w.stiffness_dt);
+    read_value(in, w.pending);
+  }
+}
+
+}  // namespace fabrica
