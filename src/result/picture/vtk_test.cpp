@@ -99,7 +99,8 @@ TEST_CASE("d3plot: VTK's reader sees our points, cells, parts, times, coordinate
   CHECK(strain->GetComponent(0, 0) == s.solid_plastic_strain[1]);
   vtkDataArray* velocity = tet->GetPointData()->GetArray("Velocity");
   REQUIRE(velocity != nullptr);
-  CHECK(velocity->GetComponent(tet->GetCell(0)->GetPointId(0), 1) == s.velocity[3 * mesh.solid[1][0] + 1]);
+  CHECK(velocity->GetComponent(tet->GetCell(0)->GetPointId(0), 1) ==
+        s.velocity[3 * mesh.solid[1][0] + 1]);
 }
 
 TEST_CASE("vtu: VTK's reader sees our mesh and fields, compressed or not") {

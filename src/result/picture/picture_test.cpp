@@ -1,0 +1,3 @@
+#include "result/picture.h"
+
+#include <doctest/doctest.h>
