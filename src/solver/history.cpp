@@ -38,7 +38,7 @@ PartSums part_sums(const Simulation& s) {
     const double mass = body.motion.mass;
     const Vec3d v = body.motion.v;
     p.mass[part] = mass;
-    p.kinetic[part] = body.motion.kinetic_energy();
+    p.kinetic[part] = 0.5 * (mass * dot(v, v) + dot(body.motion.w, body.motion.momentum));
     for (int d = 0; d < 3; ++d) p.momentum[d][part] = mass * v[d];
   }
   return p;

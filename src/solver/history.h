@@ -40,6 +40,12 @@ class History {
   std::vector<Fill> fills_;
 };
 
+// Force of the elements of a cross section on its nodes at t(n), moment about the mean of the nodes.
+struct SectionForce {
+  Vec3d force{0, 0, 0}, moment{0, 0, 0}, centroid{0, 0, 0};
+};
+SectionForce section_force(const Simulation& simulation, const CrossSection& section);
+
 // The animation state at t(n); call while the simulation samples.
 AnimationState animation_state(const Simulation& simulation);
 

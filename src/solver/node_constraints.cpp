@@ -138,6 +138,9 @@ void NodeConstraints::apply_node(State& state, int entry, bool rotation) {
   const double inertia = rotation ? state.spins[node].inertia : state.nodes[node].mass;
   Vec3d& v = rotation ? state.spins[node].w : state.nodes[node].v;
   Vec3d& before = rotation ? last_w_[entry] : last_v_[entry];
+  // initial velocities may have been set after this object was made
+  if (state.cycle == 0)
+    before = v - (state.mean_dt() / inertia) * (rotation ? state.moment : state.force)[node];
   std::array<Vec3d, 3> base;
   std::array<double, 3> value;
   int known = 0;

@@ -277,84 +277,96 @@ void RigidBodies::integrate(State& state, Joints* joints) {
     solve_component(state, components_[c], joints, component_links_[c]);
 }
 
-void RigidBodies::solve_component(State& state, const std::vector<int>& members, Joints* joints,
-                                  const std::vector<int>& links) {
+// A component's bodies and conditions, numbered locally.
+struct RigidBodies::Problem {
   std::vector<RigidMotion> before;
   std::vector<RigidTrial> trials;
   std::vector<GroundCondition> grounds;
-  std::vector<int> motion_of;
+  std::vector<int> motion_of;  // prescribed motion of each ground condition, -1: constraint code
+  std::vector<LinkCondition> links;
+  std::vector<int> joint_of;  // of each link condition
+};
+
+RigidBodies::Problem RigidBodies::pose(const State& state, const std::vector<int>& members,
+                                       Joints* joints, const std::vector<int>& links) const {
+  Problem p;
   const double dt_v = state.mean_dt();
   for (int member : members) {
-    RigidBody& b = bodies_[member];
-    const int local = int(before.size());
-    before.push_back(b.motion);
+    const RigidBody& b = bodies_[member];
     RigidTrial t{};
     t.v = b.motion.v + (dt_v / b.motion.mass) * b.force;
     t.momentum = b.motion.momentum + dt_v * b.moment;
     t.w = b.motion.w;
-    trials.push_back(t);
-    if (b.active) ground_conditions(state, member, local, grounds, motion_of);
+    if (b.active) ground_conditions(state, member, int(p.before.size()), p.grounds, p.motion_of);
+    p.before.push_back(b.motion);
+    p.trials.push_back(t);
   }
   auto local_of = [&](int body) {
     return int(std::lower_bound(members.begin(), members.end(), body) - members.begin());
   };
-  std::vector<LinkCondition> conditions;
-  std::vector<int> joint_of;
   for (int j : links) {
-    Joints::Item& item = joints->joints_[j];
-    item.force = item.moment = {};
+    const Joints::Item& item = joints->joints_[j];
     for (const JointCondition& c : item.conditions) {
-      conditions.push_back({local_of(item.a), local_of(item.b), &item.geometry, &c});
-      joint_of.push_back(j);
+      p.links.push_back({local_of(item.a), local_of(item.b), &item.geometry, &c});
+      p.joint_of.push_back(j);
     }
   }
-  if (grounds.empty() && conditions.empty()) {
-    for (std::size_t i = 0; i < members.size(); ++i) {
-      advance_trial(before[i], state.dt, trials[i]);
-      accept(state, members[i], trials[i]);
-    }
-    return;
-  }
-  Component component;
-  component.solve(before, trials, state.dt, grounds, conditions);
+  return p;
+}
 
-  // reactions and their work: half with the velocity before, half with the one after
+// Reactions and their work: half with the velocity before, half with the one after.
+void RigidBodies::book(State& state, const std::vector<int>& members, Joints* joints,
+                       const Problem& p, const Component& component) {
   for (std::size_t i = 0; i < component.rows().size(); ++i) {
     const Component::Row& row = component.rows()[i];
-    const double reaction = component.impulse[i] / dt_v;
-    double speed_before = dot(row.j.b_v, before[row.b].v) + dot(row.j.b_w, before[row.b].w);
-    double speed_after = dot(row.j.b_v, trials[row.b].v) + dot(row.j.b_w, trials[row.b].w);
+    const double reaction = component.impulse[i] / state.mean_dt();
+    double speed_before = dot(row.j.b_v, p.before[row.b].v) + dot(row.j.b_w, p.before[row.b].w);
+    double speed_after = dot(row.j.b_v, p.trials[row.b].v) + dot(row.j.b_w, p.trials[row.b].w);
     RigidBody& b = bodies_[members[row.b]];
     b.constraint_force += reaction * row.j.b_v;
     b.constraint_moment += reaction * row.j.b_w;
     if (row.a >= 0) {
-      speed_before += dot(row.j.a_v, before[row.a].v) + dot(row.j.a_w, before[row.a].w);
-      speed_after += dot(row.j.a_v, trials[row.a].v) + dot(row.j.a_w, trials[row.a].w);
+      speed_before += dot(row.j.a_v, p.before[row.a].v) + dot(row.j.a_w, p.before[row.a].w);
+      speed_after += dot(row.j.a_v, p.trials[row.a].v) + dot(row.j.a_w, p.trials[row.a].w);
       RigidBody& a = bodies_[members[row.a]];
       a.constraint_force += reaction * row.j.a_v;
       a.constraint_moment += reaction * row.j.a_w;
     }
     const double first = 0.5 * state.dt_previous * speed_before * reaction;
     const double second = 0.5 * state.dt * speed_after * reaction;
-    if (i < grounds.size()) {
+    if (i < p.grounds.size()) {
       state.energy.external_work += first, pending_external_ += second;
-      if (motion_of[i] >= 0) motion_reaction_[motion_of[i]] = reaction;
-    } else {
-      state.energy.joint -= first, pending_joint_ -= second;
-      Joints::Item& item = joints->joints_[joint_of[i - grounds.size()]];
-      const Vec3d arm = matrix_of(before[row.b].q) * item.geometry.point_b;
-      item.force += reaction * row.j.b_v;
-      item.moment += reaction * (row.j.b_w - cross(arm, row.j.b_v));
+      if (p.motion_of[i] >= 0) motion_reaction_[p.motion_of[i]] = reaction;
+      continue;
     }
+    state.energy.joint -= first, pending_joint_ -= second;
+    Joints::Item& item = joints->joints_[p.joint_of[i - p.grounds.size()]];
+    const Vec3d arm = matrix_of(p.before[row.b].q) * item.geometry.point_b;
+    item.force += reaction * row.j.b_v;
+    item.moment += reaction * (row.j.b_w - cross(arm, row.j.b_v));
   }
-  for (std::size_t i = 0; i < motion_of.size(); ++i) {
-    if (motion_of[i] < 0) continue;
-    const GroundCondition& g = grounds[i];
-    const RigidTrial& t = trials[g.body];
+}
+
+void RigidBodies::solve_component(State& state, const std::vector<int>& members, Joints* joints,
+                                  const std::vector<int>& links) {
+  Problem p = pose(state, members, joints, links);
+  for (int j : links) joints->joints_[j].force = joints->joints_[j].moment = {};
+  if (p.grounds.empty() && p.links.empty()) {
+    for (std::size_t i = 0; i < members.size(); ++i)
+      advance_trial(p.before[i], state.dt, p.trials[i]);
+  } else {
+    Component component;
+    component.solve(p.before, p.trials, state.dt, p.grounds, p.links);
+    book(state, members, joints, p, component);
+  }
+  for (std::size_t i = 0; i < p.motion_of.size(); ++i) {
+    if (p.motion_of[i] < 0) continue;
+    const GroundCondition& g = p.grounds[i];
+    const RigidTrial& t = p.trials[g.body];
     const Vec3d d = g.in_body ? matrix_of(t.q_half) * g.direction : g.direction;
-    motion_angle_[motion_of[i]] += state.dt * dot(d, g.rotation ? t.w : t.v);
+    motion_angle_[p.motion_of[i]] += state.dt * dot(d, g.rotation ? t.w : t.v);
   }
-  for (std::size_t i = 0; i < members.size(); ++i) accept(state, members[i], trials[i]);
+  for (std::size_t i = 0; i < members.size(); ++i) accept(state, members[i], p.trials[i]);
 }
 
 void RigidBodies::save(std::ostream& out) const {

@@ -109,6 +109,11 @@ class RigidBodies {
   void code_conditions(int cmo, int con1, int con2, int local_system, const RigidBody& b, int local,
                        std::vector<GroundCondition>& out) const;
   bool motion_condition(const State& state, int index, int local, GroundCondition& g) const;
+  struct Problem;
+  Problem pose(const State& state, const std::vector<int>& members, Joints* joints,
+               const std::vector<int>& links) const;
+  void book(State& state, const std::vector<int>& members, Joints* joints, const Problem& problem,
+            const Component& component);
   void solve_component(State& state, const std::vector<int>& members, Joints* joints,
                        const std::vector<int>& links);
   void accept(State& state, int body, const RigidTrial& trial);

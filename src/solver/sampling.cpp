@@ -36,7 +36,6 @@ void Simulation::update_energies() {
     }
   }
   state_.energy.kinetic = kinetic;
-  state_.energy.joint = joints_->energy();
   if (!energy_started_) {
     energy_started_ = true;
     state_.energy.initial = state_.energy.total() - state_.energy.external_work;

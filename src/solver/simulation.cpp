@@ -46,15 +46,18 @@ Simulation::Simulation(const Model& model, const RunOptions& options, Diagnostic
   const bool rotations = !state_.spins.empty();
   if (rotations) state_.interaction_moment.resize(n, FixedScale::of(scale * model_size()));
 
-  contacts_ = std::make_unique<Contacts>(model, state_, contact_input(), diagnostics);
   rigid_bodies_ = std::make_unique<RigidBodies>(model, state_, diagnostics);
-  joints_ = std::make_unique<Joints>(model, *rigid_bodies_, state_, diagnostics);
+  contacts_ = std::make_unique<Contacts>(model, state_, contact_input(), diagnostics);
+  for (const RigidTie& t : contacts_->rigid_ties()) rigid_bodies_->add_node(state_, t.part, t.node);
+  rigid_bodies_->finish(state_, diagnostics);
+  joints_ = std::make_unique<Joints>(model, *rigid_bodies_, diagnostics);
   node_constraints_ = std::make_unique<NodeConstraints>(model, state_, diagnostics);
   rigid_walls_ = std::make_unique<RigidWalls>(model, state_, diagnostics);
-  loads_ = std::make_unique<Loads>(model, state_, diagnostics);
-  damping_ = std::make_unique<Damping>(model, state_, diagnostics);
+  loads_ = std::make_unique<Loads>(model, *rigid_bodies_, diagnostics);
+  damping_ = std::make_unique<MassDamping>(model, *rigid_bodies_);
   discrete_ = std::make_unique<DiscreteElements>(model, state_, diagnostics);
-  apply_initial_conditions(model, state_, *rigid_bodies_, diagnostics);
+  discrete_->use_bodies(*rigid_bodies_);
+  apply_initial_conditions(model, state_, *rigid_bodies_);
   part_internal_.assign(model.parts.size(), 0);
   part_hourglass_.assign(model.parts.size(), 0);
 }
@@ -113,6 +116,15 @@ void Simulation::step(const Sampler& sampler) {
   check_health();
 }
 
+// Samples the present state as it stands, without a step.
+void Simulation::sample_now(const Sampler& sampler) {
+  velocity_before_.clear();
+  update_energies();
+  if (sampler.sample) sampler.sample();
+}
+
+void Simulation::stop(std::string reason) { end(Ending::signal, std::move(reason)); }
+
 // stress and internal force of every element
 void Simulation::element_forces() {
   tiles_.forces(state_, team_);
@@ -132,7 +144,8 @@ void Simulation::contact_forces() { contacts_->forces(model_, state_, team_); }
 // springs, joints by penalty, nodal loads and pressures
 void Simulation::external_forces() {
   discrete_->forces(model_, state_, team_);
-  loads_->forces(model_, state_, team_);
+  loads_->forces(state_, *rigid_bodies_);
+  rigid_walls_->forces(state_, team_);
 }
 
 // sums element partials in tile order and the fixed-point interaction forces
@@ -145,8 +158,8 @@ void Simulation::assemble() {
       if (rotations) state_.moment[n] += state_.interaction_moment.take(n);
     }
   });
+  loads_->body_forces(state_, *rigid_bodies_, team_);
   contacts_->transfer_tied_forces(state_, team_);
-  loads_->body_forces(model_, state_, team_);
 }
 
 // v(n+1/2) = v(n-1/2) + dt a, then everything that prescribes motion
@@ -162,10 +175,10 @@ void Simulation::accelerate() {
         state_.spins[n].w += (dt / state_.spins[n].inertia) * state_.moment[n];
     }
   });
-  damping_->apply(model_, state_, team_);
-  node_constraints_->apply(model_, state_);
-  rigid_walls_->apply(model_, state_, team_);
-  rigid_bodies_->integrate(model_, state_, *joints_);
+  if (damping_->active()) damping_->apply(state_, *rigid_bodies_, team_);
+  node_constraints_->apply(state_);
+  rigid_walls_->apply(state_, team_);
+  rigid_bodies_->integrate(state_, joints_.get());
 }
 
 void Simulation::advance_nodes() {
@@ -181,7 +194,6 @@ void Simulation::advance_nodes() {
 void Simulation::account_energy() {
   contacts_->account(state_);
   discrete_->account(state_);
-  loads_->account(state_);
 }
 
 }  // namespace fabrica

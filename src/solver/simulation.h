@@ -9,6 +9,7 @@
 #include "model/model.h"
 #include "model/state.h"
 #include "solver/contact.h"
+#include "solver/damping.h"
 #include "solver/discrete_elements.h"
 #include "solver/initial_conditions.h"
 #include "solver/joints.h"
@@ -51,6 +52,11 @@ class Simulation {
 
   // Advances one step. After it, x is at t(n+1), v at t(n+1/2) and forces belong to t(n).
   void step(const Sampler& sampler = {});
+
+  // Lets the sampler write the state as it stands, after the last step.
+  void sample_now(const Sampler& sampler);
+  // Ends the run from outside.
+  void stop(std::string reason);
 
   const Model& model() const { return model_; }
   const State& state() const { return state_; }
@@ -112,7 +118,7 @@ class Simulation {
   std::unique_ptr<NodeConstraints> node_constraints_;
   std::unique_ptr<RigidWalls> rigid_walls_;
   std::unique_ptr<Loads> loads_;
-  std::unique_ptr<Damping> damping_;
+  std::unique_ptr<MassDamping> damping_;
   std::unique_ptr<DiscreteElements> discrete_;
   std::unique_ptr<Contacts> contacts_;
   std::vector<double> part_internal_, part_hourglass_;

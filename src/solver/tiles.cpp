@@ -83,8 +83,11 @@ void collect(const Model& model, GroupBuilder& b) {
   for (int e = 0; e < model.shells.size(); ++e) {
     if (!needs_kernel(model, model.shells.part[e])) continue;
     const auto& n = model.shells.node[e];
-    const bool triangle = n[3] == n[2] || n[3] < 0;
-    b.add(Family::shell, model.shells.part[e], e, triangle ? 3 : 4, {n[0], n[1], n[2], n[3]});
+    // membranes take triangles as quadrilaterals with a repeated corner
+    const int part = model.shells.part[e];
+    const int form = model.parts[part].section >= 0 ? model.sections[model.parts[part].section].formulation : 0;
+    const bool triangle = (n[3] == n[2] || n[3] < 0) && form != 5 && form != 9;
+    b.add(Family::shell, model.shells.part[e], e, triangle ? 3 : 4, {n[0], n[1], n[2], n[3] < 0 ? n[2] : n[3]});
   }
   for (int e = 0; e < model.beams.size(); ++e) {
     const int part = model.beams.part[e];
@@ -355,10 +358,53 @@ void Tiles::sum_partials(State& state, int a, int b) const {
   }
 }
 
+const std::vector<ElementPlace>& Tiles::places(Family family) const {
+  return family == Family::solid ? place_of_solid : family == Family::shell ? place_of_shell : place_of_beam;
+}
+
+int Tiles::corner_forces(const State& state, Family family, int e, int* global, Vec3d* f, Vec3d* m) const {
+  const ElementPlace place = places(family)[e];
+  if (place.tile < 0) return 0;
+  const Tile& t = tiles[place.tile];
+  const TileClass& c = classes[t.tile_class];
+  const int N = c.kernel->corners(), block = place.slot / block_size, lane = place.slot % block_size;
+  // a tile of one element: its history and connectivity in the first lane, repeated
+  AlignedVector<Real> history(std::size_t(c.fields) * block_size);
+  for (int k = 0; k < c.fields; ++k)
+    for (int i = 0; i < block_size; ++i)
+      history[std::size_t(k) * block_size + i] =
+          state_[t.state + (std::size_t(block) * c.fields + k) * block_size + lane];
+  std::vector<std::uint16_t> local(std::size_t(N) * block_size);
+  for (int a = 0; a < N; ++a) {
+    const int l = connectivity[t.connectivity + (std::size_t(block) * N + a) * block_size + lane];
+    std::fill_n(local.begin() + a * block_size, block_size, std::uint16_t(l));
+    global[a] = node[t.node_first + l];
+  }
+  AlignedVector<NodeRecord> nodes(t.node_count);
+  AlignedVector<SpinRecord> spins(t.node_count);
+  AlignedVector<ForceRecord> force_sum(t.node_count), moment_sum(t.node_count);
+  fill_nodes(state, t, nodes.data(), c.kernel->rotations() ? spins.data() : nullptr);
+  TileView view;
+  view.count = 1;
+  view.connectivity = local.data(), view.state = history.data();
+  view.nodes = nodes.data(), view.spins = spins.data();
+  view.force = force_sum.data(), view.moment = moment_sum.data();
+  if (c.kernel->nodal_pressure()) {
+    view.node_rate = nodal_pressure_.rate(t.node_first);
+    view.node_pressure = nodal_pressure_.pressure(t.node_first);
+  }
+  c.kernel->forces(c.parameters, Real(0), view);
+  for (int a = 0; a < N; ++a) {
+    const Real* r = force_sum[local[std::size_t(a) * block_size]].value;
+    const Real* q = moment_sum[local[std::size_t(a) * block_size]].value;
+    f[a] = {double(r[0]), double(r[1]), double(r[2])};
+    m[a] = {double(q[0]), double(q[1]), double(q[2])};
+  }
+  return N;
+}
+
 ElementReadout Tiles::read(const Model&, const State& state, Family family, int e) const {
-  const auto& places = family == Family::solid ? place_of_solid
-                       : family == Family::shell ? place_of_shell
-                                                 : place_of_beam;
+  const auto& places = this->places(family);
   ElementReadout out;
   if (e >= int(places.size()) || places[e].tile < 0) return out;
   const Tile& t = tiles[places[e].tile];

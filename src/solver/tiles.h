@@ -56,8 +56,9 @@ class Tiles {
   ElementReadout read(const Model& model, const State& state, Family family, int element) const;
   // time step of every element of a tile, and the failed ones; runs the kernel on a copy of the history
   void element_steps(const State& state, int tile, std::vector<Real>& steps) const;
-  // which failed elements a tile has (1 alive), by slot; empty if none can fail
-  std::vector<Real> alive(int tile) const;
+  // Nodes, forces and moments of one element from its present stress; returns the number of corners, 0 if it has no
+  // tile.
+  int corner_forces(const State& state, Family family, int element, int* node, Vec3d* force, Vec3d* moment) const;
 
   void save(std::ostream&) const;
   void load(std::istream&);
@@ -78,6 +79,8 @@ class Tiles {
   bool record_steps = false;
   AlignedVector<Real> steps;
   int elements() const { return int(element.size()); }
+
+  const std::vector<ElementPlace>& places(Family family) const;
 
  private:
   void add_into(std::vector<double>& mass, std::vector<double>& inertia) const;
