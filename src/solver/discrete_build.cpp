@@ -37,6 +37,21 @@ std::optional<Law> law_of(const Model& model, int part, Make&& make, Diagnostics
   return law;
 }
 
+// whether an orientation can be followed; an error says why not
+bool usable(const Model& model, int orientation, const Location& where, Diagnostics& diagnostics) {
+  if (orientation < 0) return true;
+  const SdOrientation& o = model.sd_orientations[std::size_t(orientation)];
+  const bool by_nodes = o.option == 2 || o.option == 3;
+  if (o.option >= 0 && o.option <= 3 &&
+      (by_nodes ? o.node[0] >= 0 && o.node[1] >= 0 : norm(o.direction) > 0))
+    return true;
+  diagnostics.error("unsupported-orientation", where, "DEFINE_SD_ORIENTATION", "iop",
+                    "orientation " + std::to_string(o.id) +
+                        " has no direction, lacks its nodes, or IOP is not 0 to 3",
+                    "give XT, YT, ZT for IOP 0 and 1, NID1 and NID2 for IOP 2 and 3");
+  return false;
+}
+
 std::string element_text(std::int64_t id) { return "discrete element " + std::to_string(id); }
 
 }  // namespace
@@ -74,6 +89,8 @@ void DiscreteElements::add_springs(const Model& model, const State& state,
       tried[std::size_t(part)] = true;
     }
     if (!spring_law_[std::size_t(part)]) continue;
+    if (!usable(model, d.orientation[i], model.parts[std::size_t(part)].where, diagnostics))
+      continue;
     Spring& s = spring_[i];
     s.law = part;
     s.node1 = d.node[i][0], s.node2 = d.node[i][1];

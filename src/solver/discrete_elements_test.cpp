@@ -345,6 +345,16 @@ TEST_CASE("spring: an unsupported law is an error that names it") {
   CHECK(b.diagnostics.list()[0].name == "unsupported-discrete-law");
 }
 
+TEST_CASE("spring: an orientation without its nodes is an error") {
+  Bench b;
+  b.node({0, 0, 0}, 1), b.node({1, 0, 0}, 1);
+  b.model.sd_orientations = {{1, 2, {1, 0, 0}}};
+  b.spring(b.part("MAT_SPRING_ELASTIC", {{"k", 2}}), 0, 1, 0);
+  b.build();
+  REQUIRE(b.diagnostics.has_errors());
+  CHECK(b.diagnostics.list()[0].name == "unsupported-orientation");
+}
+
 namespace {
 // a cloud of springs and beams after some steps: positions of all nodes
 std::vector<Vec3d> run_cloud(int threads, int steps, int restart_at) {
