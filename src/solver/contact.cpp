@@ -55,7 +55,7 @@ Contacts::Contacts(const Model& model, State& state, const ContactInput& input,
     const ContactSurface b = source.build(contact, contact.b, true);
     for (const ContactNode& n : a.nodes) fixed_[c].mass_a += state.nodes[n.node].mass;
     for (const ContactNode& n : b.nodes) fixed_[c].mass_b += state.nodes[n.node].mass;
-    tied_->add(c, a, b, state, diagnostics);
+    tied_->add(c, a, b, state, input.initial_dt, diagnostics);
   }
   tied_->finish(state);
   carriers_ = tied_->carriers();

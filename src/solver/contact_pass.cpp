@@ -23,6 +23,11 @@ std::pair<int, int> feature_nodes(const ContactSegment& s, int feature) {
   return {s.node[feature - 1], s.node[feature % corners]};
 }
 
+Vec3d centre(const State& state, const ContactSegment& s) {
+  const auto& n = state.nodes;
+  return 0.25 * (n[s.node[0]].x + n[s.node[1]].x + n[s.node[2]].x + n[s.node[3]].x);
+}
+
 bool holds_feature(const ContactSegment& s, std::pair<int, int> f) {
   return holds(s, f.first) && (f.second < 0 || holds(s, f.second));
 }
@@ -286,7 +291,7 @@ double ContactPass::side_of(const Evaluation& e) const {
 }
 
 // which pairs push: the closest, and others that push in another direction
-int ContactPass::select(const ActiveNode& active, const Evaluation* list, int count,
+int ContactPass::select(const State& state, const ActiveNode& active, const Evaluation* list, int count,
                         Accepted* accepted) {
   int used = 0;
   const double same = 1e-9 * size_;
@@ -314,6 +319,11 @@ int ContactPass::select(const ActiveNode& active, const Evaluation* list, int co
     const double touch = tracked_.nodes[active.tracked].half_thickness + s.half_thickness;
     const double depth = touch - signed_distance;
     if (!(depth > 0) || -signed_distance > s.limit) continue;
+    // inside a convex edge the closer face pushes alone; in a groove both do
+    bool convex = false;
+    for (int j = 0; j < used && behind; ++j)
+      convex |= dot(centre(state, s) - list[accepted[j].evaluation].point.x, accepted[j].direction) < 0;
+    if (convex) continue;
     Vec3d direction = side * e.point.normal;
     if (feature > 0 && e.distance > 1e-12 * size_) direction = (1 / signed_distance) * e.gap;
     bool doubled = false;
@@ -350,7 +360,7 @@ void ContactPass::node_forces(State& state, const ActiveNode& active, int chunk)
                        ? candidates_[list[j].candidate].side
                        : std::int8_t(-candidates_[list[j].candidate].side);
     }
-  const int used = select(active, list, count, accepted);
+  const int used = select(state, active, list, count, accepted);
   if (used == 0) {
     remember_sides(list, count);
     for (int k = 0; k < max_slots; ++k) slots[k] = {};

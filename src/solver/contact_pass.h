@@ -92,7 +92,8 @@ class ContactPass {
   void cull(const State& state, Team& team);
   void cull_node(const State& state, int node, std::vector<int>& pairs) const;
   int evaluate(const State& state, const ActiveNode& active, Evaluation* list);
-  int select(const ActiveNode& active, const Evaluation* list, int count, Accepted* accepted);
+  int select(const State& state, const ActiveNode& active, const Evaluation* list, int count,
+             Accepted* accepted);
   void node_forces(State& state, const ActiveNode& active, int chunk);
   void push(State& state, int tracked, const Evaluation& e, const Accepted& a, ContactSlot& slot, int chunk);
   void remember_sides(const Evaluation* list, int count);

@@ -93,7 +93,7 @@ bool TiedNodes::carried_by(int node, int by) const {
 }
 
 void TiedNodes::add(int index, const ContactSurface& tracked, const ContactSurface& reference,
-                    State& state, Diagnostics& diagnostics) {
+                    State& state, double dt, Diagnostics& diagnostics) {
   const Contact& contact = model_.contacts[index];
   if (tie_of_.empty()) tie_of_.assign(state.nodes.size(), -1);
   const bool penalty = contact.offset || contact.beam_offset;
@@ -165,7 +165,9 @@ void TiedNodes::add(int index, const ContactSurface& tracked, const ContactSurfa
     for (int d = 0; d < 3; ++d) t.offset[d] = project && !soft ? 0 : o[d];
     if (soft) {
       t.stiffness = std::min(s.stiffness, n.stiffness);
-      if (!std::isfinite(t.stiffness) || t.stiffness <= 0) t.stiffness = 0;
+      // segments on no element: as stiff as the masses allow
+      if (!std::isfinite(t.stiffness) || t.stiffness <= 0)
+        t.stiffness = dt > 0 ? 0.1 * state.nodes[n.node].mass / (dt * dt) : 0;
       penalties_.push_back(t);
     } else {
       tie_of_[n.node] = int(constraints_.size());

@@ -36,9 +36,9 @@ struct Tie {
 class TiedNodes {
  public:
   explicit TiedNodes(const Model& model) : model_(model) {}
-  // Finds the pairs of one tied contact.
+  // Finds the pairs of one tied contact. dt: the expected step, for penalties on segments without an element.
   void add(int contact, const ContactSurface& tracked, const ContactSurface& reference, State& state,
-           Diagnostics& diagnostics);
+           double dt, Diagnostics& diagnostics);
   // After the last add(): orders chains, moves masses, takes the nodes over.
   void finish(State& state);
 

@@ -251,6 +251,16 @@ void RigidBodies::build_components(const Joints* joints) {
   }
   for (int j = 0; joints && j < joints->size(); ++j)
     component_links_[index[root(joints->joints_[j].a)]].push_back(j);
+  plain_.clear();
+  for (std::size_t c = 0; c < components_.size(); ++c) {
+    const RigidBody& b = bodies_[components_[c][0]];
+    const int material = b.part >= 0 ? model_.parts[b.part].material : -1;
+    const int cmo = b.part < 0      ? model_.nodal_rigid_bodies[b.nodal].cmo
+                    : material >= 0 ? model_.materials[material].cmo
+                                    : 0;
+    plain_.push_back(component_links_[c].empty() && cmo == 0 &&
+                     motions_[components_[c][0]].empty());
+  }
   components_known_ = true;
 }
 
@@ -273,8 +283,20 @@ void RigidBodies::integrate(State& state, Joints* joints) {
   state.energy.joint += pending_joint_;
   pending_external_ = pending_joint_ = 0;
   for (RigidBody& b : bodies_) b.constraint_force = b.constraint_moment = {};
-  for (std::size_t c = 0; c < components_.size(); ++c)
-    solve_component(state, components_[c], joints, component_links_[c]);
+  for (std::size_t c = 0; c < components_.size(); ++c) {
+    if (!plain_[c]) {
+      solve_component(state, components_[c], joints, component_links_[c]);
+      continue;
+    }
+    // most bodies: nothing holds them
+    const RigidBody& b = bodies_[components_[c][0]];
+    RigidTrial t{};
+    t.v = b.motion.v + (state.mean_dt() / b.motion.mass) * b.force;
+    t.momentum = b.motion.momentum + state.mean_dt() * b.moment;
+    t.w = b.motion.w;
+    advance_trial(b.motion, state.dt, t);
+    accept(state, components_[c][0], t);
+  }
 }
 
 // A component's bodies and conditions, numbered locally.

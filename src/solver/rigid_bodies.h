@@ -127,6 +127,7 @@ class RigidBodies {
   std::vector<Chunk> chunks_;
   std::vector<Vec3d> partial_;
   std::vector<std::vector<int>> components_, component_links_;
+  std::vector<unsigned char> plain_;  // component of one body without conditions
   bool components_known_ = false;
   double pending_external_ = 0, pending_joint_ = 0;  // second halves of the work of the last forces
 };

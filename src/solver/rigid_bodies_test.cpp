@@ -389,3 +389,57 @@ TEST_CASE("a restart of bodies and joints continues with the same bits, for any 
   }
   CHECK(one.state.energy.joint == resumed.state.energy.joint);
 }
+
+TEST_CASE("constraint codes hold a body in global and in local directions") {
+  const double c = std::cos(0.4), s = std::sin(0.4);
+  for (const int cmo : {1, -1}) {
+    Mechanism m;
+    const int a = m.node({0, 0, 0}), b = m.node({1, 0, 0}), d = m.node({0, 1, 0}),
+              e = m.node({0, 0, 1});
+    const int p = m.part({a, b, d, e});
+    CoordinateSystem cs;
+    cs.axes = {{{c, s, 0}, {-s, c, 0}, {0, 0, 1}}};
+    m.model.coordinate_systems.push_back(cs);
+    Material& mat = m.model.materials[m.model.parts[p].material];
+    mat.cmo = cmo, mat.local_system = cmo < 0 ? 0 : -1;
+    // global: y and z, rotation about x; local: x, rotations about x and z
+    mat.con1 = cmo > 0 ? 5 : 0, mat.con2 = cmo > 0 ? 1 : 100101;
+    m.start();
+    for (int i = 0; i < 50; ++i) {
+      m.state.force[b] = {1, 2, -3}, m.state.force[e] = {0.5, -1, 2};
+      m.step(0.01);
+      const RigidMotion& body = (*m.bodies)[0].motion;
+      const Vec3d x{c, s, 0};
+      if (cmo > 0) {
+        REQUIRE(std::abs(body.v.y) + std::abs(body.v.z) + std::abs(body.w.x) < 1e-14);
+      } else {
+        REQUIRE(std::abs(dot(body.v, x)) + std::abs(dot(body.w, x)) + std::abs(body.w.z) < 1e-14);
+      }
+    }
+    const RigidBody& body = (*m.bodies)[0];
+    CHECK(norm(body.motion.v) > 0.1);
+    CHECK(norm(body.motion.w) > 0.1);
+    // the constraint takes up the force along what it holds
+    if (cmo > 0) CHECK(norm(body.constraint_force - Vec3d{0, -1, 1}) < 1e-12);
+    CHECK(std::abs(body.constraint_force.x + (cmo > 0 ? 0 : (1.5 * c + s) * c)) < 1e-12);
+  }
+}
+
+TEST_CASE("a weld ends at its time and its nodes fly on") {
+  Mechanism m;
+  const int a = m.node({0, 0, 0}), b = m.node({1, 0, 0});
+  NodalRigidBody weld;
+  weld.nodes = {a, b}, weld.failure_time = 0.055;
+  m.model.nodal_rigid_bodies.push_back(weld);
+  m.start();
+  CHECK(m.diagnostics.count(Severity::warning) == 1);  // nodes on a line
+  m.bodies->set_velocity(0, {0, 0, 1}, {0, 2, 0});
+  for (int i = 0; i < 6; ++i) m.step(0.01);
+  CHECK(m.state.owner[a] == NodeOwner::rigid);
+  const Vec3d v = m.state.nodes[a].v, x = m.state.nodes[a].x;
+  m.step(0.01);
+  CHECK(m.state.owner[a] == NodeOwner::free);
+  CHECK(m.bodies->body_of_node(a) == -1);
+  CHECK(norm(m.state.nodes[a].v - v) == 0);
+  CHECK(norm(m.state.nodes[a].x - x) == 0);
+}

@@ -215,7 +215,7 @@ void RigidWalls::penalty(Wall& wall, State& state, Team& team, double speed) {
       model_.controls.rigid_wall_penalty > 0 ? model_.controls.rigid_wall_penalty : 1;
   const double dt = state.dt > 0 ? state.dt : state.dt_previous;
   // the stiffness follows the step only when it must, so that stored energy is given back
-  if (wall.stiffness_dt == 0 || dt < 0.95 * wall.stiffness_dt) wall.stiffness_dt = dt;
+  if (dt < 0.95 * wall.stiffness_dt || dt > 1.5 * wall.stiffness_dt) wall.stiffness_dt = dt;
   const double factor = dt > 0 ? 0.1 * scale / (wall.stiffness_dt * wall.stiffness_dt) : 0;
   const double reach = state.dt_previous * (speed + norm(wall.velocity));
   const WallGeometry g = now(wall);
