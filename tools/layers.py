@@ -24,8 +24,8 @@ ALLOWED = {
 }
 ALLOWED["study"] = ["deck", "result", "body", "solver", "signal", "injury", "model", "base"]
 ALLOWED["app"] = ["study", *ALLOWED["study"], *KERNELS]
-# the contract between elements and laws, and the adaptor that reduces any law to plane stress: not laws themselves
-CONTRACT = {"material/point.h", "material/plane_stress.h"}
+# the contract between elements and laws, and the adaptors to plane stress and uniaxial stress: not laws themselves
+CONTRACT = {"material/point.h", "material/plane_stress.h", "material/uniaxial.h"}
 # drivers that must not see each other
 APART = [("solver/cpu", "solver/cuda")]
 
