@@ -122,6 +122,12 @@ struct LowDensityFoamOf {
       most = max(most, stretch[i] * abs(tau[i]));
       principal[i] = per_volume * stretch[i] * tau[i];
     }
+    // shear between two axes: (t_i - t_j) / (lam_i^2 - lam_j^2) x the larger lam^2, t = lam tau
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3;
+      const L across = abs(stretch[i] * tau[i] - stretch[j] * tau[j]) / max(abs(e.value[i] - e.value[j]), L(1e-3));
+      modulus = max(modulus, across * (one + max(e.value[i], e.value[j])));
+    }
     const Sym3<L> viscous_part = viscous_stress(from_principal(logarithm, e.vector), point, state);
     const L impedance = sqrt(L(youngs) * L(density)) / max(sqrt((modulus + most) * L(density)), L(1e-30));
     point.modulus = damped_modulus((modulus + most) * per_volume + L(viscous ? branch : Real(0)),
