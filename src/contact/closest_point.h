@@ -15,8 +15,8 @@ struct SurfacePoint {
   double phi[4];    // weights of the corners; sum 1
   Vec3d x;          // closest point
   Vec3d normal;     // unit normal of the segment there
-  double r = 0, s = 0;
-  int feature = 0;  // 0 inside; 1-4 on edge i-1 -> i; 5-8 corner i-5
+  double r, s;
+  int feature;      // 0 inside; 1-4 on edge i-1 -> i; 5-8 corner i-5
 };
 
 namespace contact_detail {
@@ -57,6 +57,7 @@ inline void natural_coordinates_of_edge_point(SurfacePoint& p) {
 // Triangle with corners X[0..2].
 inline SurfacePoint closest_point_triangle(const Vec3d* X, const Vec3d& x) {
   SurfacePoint p;
+  p.r = p.s = 0, p.feature = 0;
   const Vec3d a = X[1] - X[0], b = X[2] - X[0], e = x - X[0];
   const double aa = dot(a, a), ab = dot(a, b), bb = dot(b, b), ea = dot(e, a), eb = dot(e, b);
   const double d = aa * bb - ab * ab;
@@ -74,6 +75,7 @@ inline SurfacePoint closest_point_triangle(const Vec3d* X, const Vec3d& x) {
 // Quad with corners X[0..3]; r, s: where to start (a former solution or 0, 0).
 inline SurfacePoint closest_point_quad(const Vec3d* X, const Vec3d& x, double r, double s) {
   SurfacePoint p;
+  p.feature = 0;
   const Vec3d c = 0.25 * (X[0] + X[1] + X[2] + X[3]), a = 0.25 * (X[1] + X[2] - X[0] - X[3]);
   const Vec3d b = 0.25 * (X[2] + X[3] - X[0] - X[1]), g = 0.25 * (X[0] - X[1] + X[2] - X[3]);
   Vec3d t1, t2, e;

@@ -51,13 +51,25 @@ struct Filter : PairFilter {
   const ContactSurface& tracked;
   const ContactSurface& reference;
   const CarrierNodes& carriers;
-  Filter(const ContactSurface& t, const ContactSurface& r, const CarrierNodes& c)
-      : tracked(t), reference(r), carriers(c) {}
+  const std::vector<Vec3d>& start;  // positions
+  Filter(const ContactSurface& t, const ContactSurface& r, const CarrierNodes& c,
+         const std::vector<Vec3d>& x)
+      : tracked(t), reference(r), carriers(c), start(x) {}
+  // the other face of the same thin solid, through the material
+  bool opposite_face(const ContactNode& n, const ContactSegment& s) const {
+    if (s.two_sided || n.part != s.part) return false;
+    const Vec3d &a = start[s.node[0]], &b = start[s.node[1]], &c = start[s.node[2]], &d = start[s.node[3]];
+    const Vec3d normal = contact_detail::unit(s.triangle ? cross(b - a, c - a) : cross(c - a, d - b));
+    const Vec3d u = start[n.node] - 0.25 * (a + b + c + d);
+    const double near = 4 * s.limit + 2 * std::sqrt(s.area);
+    return dot(u, normal) < 0 && dot(n.normal, normal) < 0 && dot(u, u) < near * near;
+  }
   bool keep(int point, int box) const override {
     const ContactNode& n = tracked.nodes[point];
     const ContactSegment& s = reference.segments[box];
     if (holds(s, n.node)) return false;
     if (n.body >= 0 && n.body == s.body) return false;
+    if (opposite_face(n, s)) return false;
     if (carriers.empty()) return true;
     for (int c : carriers[n.node])
       if (holds(s, c)) return false;
@@ -78,6 +90,7 @@ ContactPass::ContactPass(const Model& model, const Contact& contact, int contact
       tracked_(std::move(tracked)),
       reference_(std::move(reference)),
       carriers_(carriers),
+      start_(model.nodes.x),
       penalty_option_(model.controls.penalty_option) {
   friction_ = {contact.fs * contact.fsf, contact.fd * contact.fsf, contact.dc, contact.vc * contact.vsf};
   std::vector<double> sizes;
@@ -170,7 +183,7 @@ void ContactPass::search(const State& state) {
     const Vec3d m{margin, margin, margin};
     boxes[b] = {low - m, high + m};
   }
-  const PointBoxPairs pairs = find_pairs(points, boxes, Filter(tracked_, reference_, carriers_));
+  const PointBoxPairs pairs = find_pairs(points, boxes, Filter(tracked_, reference_, carriers_, start_));
   std::vector<ContactCandidate> next(pairs.box.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const bool had = !first_.empty();
@@ -215,8 +228,6 @@ void ContactPass::cull_node(const State& state, int node, std::vector<int>& pair
     if (far) continue;
     const SurfacePoint p = s.triangle ? closest_point_triangle(X, x)
                                       : closest_point_quad(X, x, candidates_[c].r, candidates_[c].s);
-    // a face of a solid does not push what is about to leave through its back
-    if (!s.two_sided && dot(tracked.normal, p.normal) > 0.7) continue;
     const double distance = norm(x - p.x);
     if (distance > margin) continue;
     const bool inside = p.feature == 0;
@@ -270,13 +281,12 @@ int ContactPass::evaluate(const State& state, const ActiveNode& active, Evaluati
   int count = 0;
   for (int i = 0; i < active.count && count < max_pairs; ++i) {
     ContactCandidate& c = candidates_[active_pairs_[active.first + i]];
-    Evaluation e;
+    Evaluation& e = list[count];
     e.point = project(state, c.segment, x, c.r, c.s);
     e.gap = x - e.point.x, e.distance = norm(e.gap), e.candidate = active_pairs_[active.first + i];
     c.r = float(e.point.r), c.s = float(e.point.s);
-    int at = count++;
-    for (; at > 0 && list[at - 1].distance > e.distance; --at) list[at] = list[at - 1];
-    list[at] = e;
+    for (int at = count++; at > 0 && list[at - 1].distance > list[at].distance; --at)
+      std::swap(list[at - 1], list[at]);
   }
   return count;
 }

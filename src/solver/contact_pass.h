@@ -110,6 +110,7 @@ class ContactPass {
   int contact_index_;
   ContactSurface tracked_, reference_;
   const CarrierNodes& carriers_;
+  const std::vector<Vec3d>& start_;  // positions in the model
   Friction friction_;
   int penalty_option_;
   double outer_skin_ = 0, inner_skin_ = 0, size_ = 0, largest_half_ = 0;

@@ -136,7 +136,7 @@ TEST_CASE("contact keeps linear momentum and gives a frictionless bounce its ene
     for (int n : rig.upper) rig.state.nodes[n].v = {0, 0, -0.01};
     Team team(1);
     double largest = 0, stored = 0;
-    for (int i = 0; i < 1500; ++i) {
+    for (int i = 0; i < 2500; ++i) {
       rig.step(team, 0.02, {rig.lower, rig.upper});
       CHECK(norm(total(rig.state.force)) < 1e-10);
       for (const Vec3d& f : rig.state.force) largest = std::max(largest, norm(f));
@@ -146,7 +146,7 @@ TEST_CASE("contact keeps linear momentum and gives a frictionless bounce its ene
     const double mass_a = double(rig.lower.size()), mass_b = double(rig.upper.size());
     // elastic impact of two free masses
     const double expected_b = -0.01 * (mass_b - mass_a) / (mass_b + mass_a);
-    CHECK(rig.state.nodes[rig.upper[0]].v.z == doctest::Approx(expected_b).epsilon(0.005));
+    CHECK(rig.state.nodes[rig.upper[0]].v.z / expected_b == doctest::Approx(1).epsilon(0.0025));
     // everything that was stored came back
     CHECK(std::abs(rig.state.energy.contact) < 0.01 * stored);
   }
@@ -166,7 +166,7 @@ TEST_CASE("work of contact is what the masses lose") {
   const double before = kinetic();
   for (int i = 0; i < 1500; ++i) rig.step(team, 0.02, {rig.lower, rig.upper});
   CHECK(kinetic() < 0.98 * before);
-  CHECK(kinetic() + rig.state.energy.contact == doctest::Approx(before).epsilon(1e-6));
+  CHECK((kinetic() + rig.state.energy.contact) / before == doctest::Approx(1).epsilon(1e-6));
   CHECK(rig.state.energy.contact_friction > 0);
   CHECK(rig.state.energy.contact > rig.state.energy.contact_friction);
 }
@@ -196,7 +196,7 @@ TEST_CASE("block on an incline slides with g (sin - mu cos) and sticks below the
     for (int i = 0; i < 1000; ++i) rig.step(team, dt, {nodes});
     const double acceleration = (speed() - v0) / (1000 * dt);
     if (angle == 30.0) {
-      CHECK(acceleration == doctest::Approx(g * (std::sin(a) - mu * std::cos(a))).epsilon(0.005));
+      CHECK(acceleration / (g * (std::sin(a) - mu * std::cos(a))) == doctest::Approx(1).epsilon(0.0025));
       CHECK(rig.state.energy.contact_friction > 0);
     } else {
       CHECK(std::abs(acceleration) < 0.005 * g);
@@ -368,6 +368,7 @@ TEST_CASE("a penalty tie holds a node in place and keeps momentum") {
   for (const NodeMotion& n : rig.state.nodes) kinetic += 0.5 * n.mass * dot(n.v, n.v);
   const double gap = rig.state.nodes[upper[0]].x.z - rig.state.nodes[lower[0]].x.z;
   CHECK(stored > 0);
-  CHECK(std::abs(gap - 0.15) < 0.2);
-  CHECK(kinetic + rig.state.energy.contact == doctest::Approx(0.5 * 16 * 1e-4).epsilon(0.01));
+  // travel of the spring: v sqrt(m/k)
+  CHECK(std::abs(gap - 0.15) < 0.05);
+  CHECK((kinetic + rig.state.energy.contact) / (0.5 * 16 * 1e-4) == doctest::Approx(1).epsilon(0.005));
 }
