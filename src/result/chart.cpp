@@ -78,8 +78,17 @@ void add_curve(Drawing& d, const Frame& f, const PlotCurve& c, const Rgb& color)
   finish();
 }
 
-std::string number(double v, double step) {
-  return fmt::format("{:.6g}", std::abs(v) < 1e-9 * std::abs(step) ? 0.0 : v);
+// Ticks in units of 10^exponent, a multiple of three; 0 where the numbers are short as they are.
+int exponent_of(const std::vector<double>& ticks) {
+  const double most = std::max(std::abs(ticks.front()), std::abs(ticks.back()));
+  if (most >= 1e-2 && most < 1e5) return 0;
+  return 3 * int(std::floor(std::log10(most) / 3));
+}
+
+std::string number(double v, const std::vector<double>& ticks) {
+  const double step = ticks[1] - ticks[0];
+  return fmt::format("{:.6g}",
+                     std::abs(v) < 1e-9 * step ? 0.0 : v / std::pow(10, exponent_of(ticks)));
 }
 
 void add_axes(Drawing& d, const Frame& f, const std::vector<double>& xs,
@@ -90,13 +99,18 @@ void add_axes(Drawing& d, const Frame& f, const std::vector<double>& xs,
   for (const double x : xs) {
     if (x < f.x0 - 1e-9 * (f.x1 - f.x0) || x > f.x1 + 1e-9 * (f.x1 - f.x0)) continue;
     line(f.px(x), f.top, f.px(x), f.bottom, pale, 1);
-    d.labels.push_back({f.px(x), f.bottom + 18, number(x, xs[1] - xs[0]), 14, ink, Anchor::middle});
+    d.labels.push_back({f.px(x), f.bottom + 18, number(x, xs), 14, ink, Anchor::middle});
   }
   for (const double y : ys) {
     if (y < f.y0 - 1e-9 * (f.y1 - f.y0) || y > f.y1 + 1e-9 * (f.y1 - f.y0)) continue;
     line(f.left, f.py(y), f.right, f.py(y), pale, 1);
-    d.labels.push_back({f.left - 9, f.py(y), number(y, ys[1] - ys[0]), 14, ink, Anchor::end});
+    d.labels.push_back({f.left - 9, f.py(y), number(y, ys), 14, ink, Anchor::end});
   }
+  if (const int e = exponent_of(xs))
+    d.labels.push_back(
+        {f.right, f.bottom + 38, fmt::format("x 1e{}", e), 13, axis_color, Anchor::end});
+  if (const int e = exponent_of(ys))
+    d.labels.push_back({f.left, f.top - 12, fmt::format("x 1e{}", e), 13, axis_color});
   if (f.y0 < 0 && f.y1 > 0) line(f.left, f.py(0), f.right, f.py(0), axis_color, 1);
   line(f.left, f.top, f.left, f.bottom, axis_color, 1.4);
   line(f.left, f.bottom, f.right, f.bottom, axis_color, 1.4);
@@ -146,7 +160,7 @@ Drawing make_chart(const PlotOptions& o, const std::vector<PlotCurve>& curves) {
   const double y0 = o.y_range ? low : ys.front(), y1 = o.y_range ? high : ys.back();
 
   std::size_t widest = 1;
-  for (const double y : ys) widest = std::max(widest, number(y, ys[1] - ys[0]).size());
+  for (const double y : ys) widest = std::max(widest, number(y, ys).size());
   const std::vector<std::string> names = legend_names(curves);
   const std::string y_label = !o.y_label.empty() ? o.y_label : curves.size() == 1 ? names[0] : "";
   const bool legend = curves.size() > 1;
@@ -160,7 +174,7 @@ Drawing make_chart(const PlotOptions& o, const std::vector<PlotCurve>& curves) {
   const int rows = legend ? (int(names.size()) + columns - 1) / columns : 0;
   const double title = o.title.empty() ? 16 : 46;
   const Frame f{
-      left, double(o.width) - 24, title + 24 * rows + 8, double(o.height) - 58, x0, x1, y0, y1};
+      left, double(o.width) - 24, title + 24 * rows + 18, double(o.height) - 58, x0, x1, y0, y1};
   if (f.bottom - f.top < 40) throw std::runtime_error("too many curves for a chart of this height");
 
   add_axes(d, f, xs, ys);

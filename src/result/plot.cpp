@@ -6,6 +6,8 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <memory>
 #include <set>
 #include <stdexcept>
 
@@ -50,9 +52,14 @@ std::string resolve(const std::string& wanted, const std::vector<std::string>& n
       if (const std::size_t at = n.find(wanted); anywhere ? at != std::string::npos : at == 0)
         found.push_back(n);
     if (found.size() == 1) return found[0];
-    if (found.size() > 1)
+    if (found.size() > 1) {
+      // all that may be meant
+      found.clear();
+      std::copy_if(names.begin(), names.end(), std::back_inserter(found),
+                   [&](const std::string& n) { return n.find(wanted) != std::string::npos; });
       throw std::runtime_error(
           fmt::format("{} '{}' may be any of: {}", what, wanted, joined(found)));
+    }
   }
   throw std::runtime_error(
       fmt::format("there is no {} '{}'; there are: {}", what, wanted, joined(names)));

@@ -192,7 +192,7 @@ void add_lines(vtkRenderer* renderer, const Panel& panel, vtkPolyDataMapper* lik
 // camera.
 void add_lights(vtkRenderer* renderer) {
   renderer->AutomaticLightCreationOff();
-  const double from[3][4] = {{-0.5, 1.1, 1, 0.62}, {0.9, 0.2, 0.8, 0.35}, {0, 0, 1, 0.22}};
+  const double from[3][4] = {{-0.5, 1.1, 1, 0.55}, {0.9, 0.2, 0.8, 0.35}, {0, 0, 1, 0.3}};
   for (const auto& f : from) {
     vtkNew<vtkLight> light;
     light->SetLightTypeToCameraLight();
@@ -216,8 +216,8 @@ void add_actors(vtkRenderer* renderer, const Panel& panel, bool edges) {
   vtkNew<vtkActor> actor;
   actor->SetMapper(mapper);
   vtkProperty* p = actor->GetProperty();
-  p->SetAmbient(0.25);
-  p->SetDiffuse(0.8);
+  p->SetAmbient(0.42);
+  p->SetDiffuse(0.75);
   p->SetSpecular(0.06);
   p->SetLineWidth(float(edges ? 1.2 : 2.5));
   p->SetPointSize(6);
