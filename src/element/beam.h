@@ -2,12 +2,14 @@
 // Frame and relative rotations that all beams share.
 // Frame E: e1 along the chord, e2 carried along. Over a step the frame turns by
 //   theta_E = s (1 + s.s/6) + (mean theta . em) em,  s = e1(old) x e1 = dt x21 x v21 / (L(old) L),
-//   em: direction half way between e1(old) and e1                                                          (1)
+//   em: direction half way between e1(old) and e1                                               (1)
 // and the section of corner I turns relative to it by
-//   d_I = theta_I - theta_E + 1/2 theta_E x (theta_I - theta_E),  theta_I = w_I dt, in E                     (2)
-// which is objective to second order of the step. Only the small relative rotations are kept, not the triads of the
-// sections: increments far below the rounding of a triad's entries stay visible in single precision.
-// Source: Belytschko and Schwer, Int. J. Num. Meth. Eng. 11 (1977); Crisfield, Non-linear FE, vol. 2, ch. 16.
+//   d_I = theta_I - theta_E + 1/2 theta_E x (theta_I - theta_E),  theta_I = w_I dt, in E        (2)
+// which is objective to second order of the step. Only the small relative rotations are kept, not
+// the triads of the sections: increments far below the rounding of a triad's entries stay visible
+// in single precision.
+// Source: Belytschko and Schwer, Int. J. Num. Meth. Eng. 11 (1977); Crisfield, Non-linear FE, vol.
+// 2, ch. 16.
 #include "element/kernel.h"
 
 namespace fabrica {
@@ -15,9 +17,10 @@ namespace fabrica {
 template <class L>
 struct BeamFrame {
   Vec3<L> e1, e2, e3;
-  L length, stretch;  // current length and its increment, (L^2 - L(old)^2)/(L + L(old)) without cancellation
-  L axial;            // strain increment (L^2 - L(old)^2)/(2 Lm^2)
-  Vec3<L> d[2];       // relative rotation increments in E
+  L length,
+      stretch;  // current length and its increment (L^2 - L(old)^2)/(L + L(old))
+  L axial;      // strain increment (L^2 - L(old)^2)/(2 Lm^2)
+  Vec3<L> d[2];  // relative rotation increments in E
 
   // axis: the old e2
   FABRICA_FN BeamFrame(const Corners<L, 2>& c, const L& dt, const Vec3<L>& axis) {
@@ -50,8 +53,8 @@ struct BeamFrame {
   FABRICA_FN Vec3<L> global(const Vec3<L>& a) const { return a.x * e1 + a.y * e2 + a.z * e3; }
 };
 
-// e2 at the start: the given vector made orthogonal to the chord; where it is missing or parallel, the global axis
-// least aligned with the chord serves.
+// e2 at the start: the given vector made orthogonal to the chord; where it is missing or parallel,
+// the global axis least aligned with the chord serves.
 template <class L>
 FABRICA_FN Vec3<L> beam_axis(const Corners<L, 2>& c, const Vec3<L>& orientation) {
   const Vec3<L> x21 = c.x[1] - c.x[0];
@@ -60,8 +63,7 @@ FABRICA_FN Vec3<L> beam_axis(const Corners<L, 2>& c, const Vec3<L>& orientation)
   const Vec3<L> wanted = orthogonal(orientation);
   const L zero = L(0.0), one = L(1.0);
   const auto small = (abs(e1.y) <= abs(e1.x)) & (abs(e1.y) <= abs(e1.z));
-  const Vec3<L> spare =
-      orthogonal({zero, select(small, one, zero), select(small, zero, one)});
+  const Vec3<L> spare = orthogonal({zero, select(small, one, zero), select(small, zero, one)});
   const auto usable = dot(wanted, wanted) > L(1e-8) * dot(orientation, orientation);
   Vec3<L> e2;
   for (int i = 0; i < 3; ++i) e2[i] = select(usable, wanted[i], spare[i]);

@@ -1,9 +1,10 @@
 #pragma once
-// Hughes-Liu beam (ELFORM 1): one point along the axis, points (s, t) in the section, stress by the uniaxial law.
-// With the relative rotations d_I of beam.h, k = (d2 - d1)/L:
-//   exx = e + t k_y - s k_z,   2exy = -mean d_z - t k_x,   2exz = mean d_y + s k_x                           (1)
+// Hughes-Liu beam (ELFORM 1): one point along the axis, points (s, t) in the section, stress by the
+// uniaxial law. With the relative rotations d_I of beam.h, k = (d2 - d1)/L:
+//   exx = e + t k_y - s k_z,   2exy = -mean d_z - t k_x,   2exz = mean d_y + s k_x              (1)
 // Forces are the transposes. The point's area is area * weight / sum of weights.
-// Source: Hughes and Liu, CMAME 26 and 27 (1981); one-point form as in Hallquist, theory manual (public).
+// Source: Hughes and Liu, CMAME 26 and 27 (1981); one-point form as in Hallquist, theory manual
+// (public).
 #include "element/beam.h"
 #include "material/uniaxial.h"
 
@@ -24,27 +25,29 @@ struct BeamHughesLiu {
     return points_field + stride<M> * p.section_points;
   }
   template <class L, class M>
-  FABRICA_FN static void initialise(const M&, const ElementParameters& p, const Corners<L, 2>& c, const Given<L>& g,
-                                    StateView<L> s) {
+  FABRICA_FN static void initialise(const M&, const ElementParameters& p, const Corners<L, 2>& c,
+                                    const Given<L>& g, StateView<L> s) {
     s.put(axis_field, beam_axis(c, g.orientation));
     if constexpr (M::can_fail)
       for (int q = 0; q < p.section_points; ++q) s.store(points_field + q * stride<M> + 3, L(1.0));
   }
-  static void lump(const ElementParameters& p, const Corners<double, 2>& c, const Given<double>&, double (&mass)[2],
-                   double (&inertia)[2]) {
+  static void lump(const ElementParameters& p, const Corners<double, 2>& c, const Given<double>&,
+                   double (&mass)[2], double (&inertia)[2]) {
     lump_beam(p, c, mass, inertia);
   }
 
   template <class L, class M>
-  FABRICA_FN static void forces(const M& material, const ElementParameters& p, Real dt_previous, const Corners<L, 2>& c,
-                                StateView<L> s, CornerForces<L, 2>& out, Totals<L>& totals) {
+  FABRICA_FN static void forces(const M& material, const ElementParameters& p, Real dt_previous,
+                                const Corners<L, 2>& c, StateView<L> s, CornerForces<L, 2>& out,
+                                Totals<L>& totals) {
     using MaterialState = typename M::template State<L>;
     const L dt = L(dt_previous), zero = L(0.0), half = L(0.5);
     const BeamFrame<L> e(c, dt, s.template get<Vec3<L>>(axis_field));
     s.put(axis_field, e.e2);
     const Vec3<L> k = (L(1.0) / e.length) * (e.d[1] - e.d[0]);
     const L shear_s = -(half * (e.d[0].z + e.d[1].z)), shear_t = half * (e.d[0].y + e.d[1].y);
-    const Point<L> start{dt, L(1.0), e.length, L(p.bulk + Real(4.0 / 3.0) * p.shear), L(p.shear), L(1.0)};
+    const Point<L> start{dt,         L(1.0), e.length, L(p.bulk + Real(4.0 / 3.0) * p.shear),
+                         L(p.shear), L(1.0)};
     L modulus = start.modulus, work = zero;
     L r[6] = {zero, zero, zero, zero, zero, zero};
     Real weights = 0;
@@ -52,8 +55,10 @@ struct BeamHughesLiu {
     if constexpr (M::can_fail) totals.alive = zero;
     for (int q = 0; q < p.section_points; ++q) {
       StateView<L> at{s.block + (points_field + q * stride<M>)*block_size};
-      const L S = L(p.section_s[q]), T = L(p.section_t[q]), area = L(p.area * p.section_weight[q] / weights);
-      const L xx = e.axial + T * k.y - S * k.z, xy = fma(-T, k.x, shear_s), zx = fma(S, k.x, shear_t);
+      const L S = L(p.section_s[q]), T = L(p.section_t[q]),
+              area = L(p.area * p.section_weight[q] / weights);
+      const L xx = e.axial + T * k.y - S * k.z, xy = fma(-T, k.x, shear_s),
+              zx = fma(S, k.x, shear_t);
       Sym3<L> old{at.load(0), zero, zero, at.load(1), zero, at.load(2)};
       MaterialState state = at.template get<MaterialState>(material_field<M>);
       Point<L> point = start;
@@ -106,13 +111,15 @@ struct BeamHughesLiu {
  private:
   // beta C : D on the section: axial, shear and the two moments
   template <class L>
-  FABRICA_FN static void damp(const ElementParameters& p, const BeamFrame<L>& e, const Vec3<L>& k, const L& shear_s,
-                              const L& shear_t, const L& dt, L (&r)[6], Totals<L>& totals) {
-    const L beta = p.stiffness_damping > 0 ? L(p.stiffness_damping) * totals.time_step : L(-p.stiffness_damping);
+  FABRICA_FN static void damp(const ElementParameters& p, const BeamFrame<L>& e, const Vec3<L>& k,
+                              const L& shear_s, const L& shear_t, const L& dt, L (&r)[6],
+                              Totals<L>& totals) {
+    const L beta = p.stiffness_damping > 0 ? L(p.stiffness_damping) * totals.time_step
+                                           : L(-p.stiffness_damping);
     const L rate = totals.alive * beta / max(dt, L(1e-30));
     const L u[5] = {e.axial, shear_s, shear_t, k.y, k.z};
-    const Real c[5] = {p.youngs * p.area, p.shear_factor * p.shear * p.area, p.shear_factor * p.shear * p.area,
-                       p.youngs * p.iss, p.youngs * p.itt};
+    const Real c[5] = {p.youngs * p.area, p.shear_factor * p.shear * p.area,
+                       p.shear_factor * p.shear * p.area, p.youngs * p.iss, p.youngs * p.itt};
     for (int i = 0; i < 5; ++i) {
       const L viscous = rate * L(c[i]) * u[i];
       r[i] += viscous;
@@ -120,11 +127,13 @@ struct BeamHughesLiu {
     }
   }
   template <class L>
-  FABRICA_FN static void corner_forces(const BeamFrame<L>& e, const L (&r)[6], CornerForces<L, 2>& out) {
+  FABRICA_FN static void corner_forces(const BeamFrame<L>& e, const L (&r)[6],
+                                       CornerForces<L, 2>& out) {
     const L half = L(0.5) * e.length;
     out.f[0] = e.global({r[0], r[1], r[2]});
     out.f[1] = -out.f[0];
-    const Vec3<L> bend = e.global({r[5], r[3], r[4]}), lever = e.global({L(0.0), -(half * r[2]), half * r[1]});
+    const Vec3<L> bend = e.global({r[5], r[3], r[4]}),
+                  lever = e.global({L(0.0), -(half * r[2]), half * r[1]});
     out.m[0] = bend + lever, out.m[1] = lever - bend;
   }
 };

@@ -1,11 +1,14 @@
 #pragma once
-// Belytschko-Schwer beam (ELFORM 2): elastic resultants in a frame that turns with the chord; axes r, s, t = e1, e2, e3.
+// Belytschko-Schwer beam (ELFORM 2): elastic resultants in a frame that turns with the chord; axes
+// r, s, t = e1, e2, e3.
 //   N = E A dL/L0,  dL = sum of (L^2 - L(old)^2)/(L + L(old)),   T = G J (phi2 - phi1)_r / L0
-//   M1 = E I/(L0 (1+P)) [(4+P) phi1 + (2-P) phi2],  M2 likewise,  P = 12 E I/(G As L0^2), 0 where As = 0     (1)
-// about s with Iss, about t with Itt; phi: rotation vectors of the end sections relative to E (beam.h).
-// The sum keeps small stretches free of the rounding of L. Shear from equilibrium of moments. Damping DA, DB: the fraction of critical of the highest axial mode, N and T
-// with beta = DA L/c, M with beta = DB L/c.
-// Stable step: min of L/c and L/(2 c sqrt(3 I (3/(12 I + A L^2) + 1/(A L^2))))                              (2)
+//   M1 = E I/(L0 (1+P)) [(4+P) phi1 + (2-P) phi2],  M2 likewise
+//   P = 12 E I/(G As L0^2), 0 where As = 0                                                      (1)
+// about s with Iss, about t with Itt; phi: rotation vectors of the end sections relative to E
+// (beam.h). The sum keeps small stretches free of the rounding of L. Shear from equilibrium of
+// moments. Damping DA, DB: the fraction of critical of the highest axial mode, N and T with beta =
+// DA L/c, M with beta = DB L/c.
+// Stable step: min of L/c and L/(2 c sqrt(3 I (3/(12 I + A L^2) + 1/(A L^2))))                  (2)
 // Source: Belytschko, Schwer, Klein, Int. J. Num. Meth. Eng. 11 (1977) 65.
 #include "element/beam.h"
 
@@ -23,19 +26,20 @@ struct BeamSchwer {
     return fields;
   }
   template <class L, class M>
-  FABRICA_FN static void initialise(const M&, const ElementParameters&, const Corners<L, 2>& c, const Given<L>& g,
-                                    StateView<L> s) {
+  FABRICA_FN static void initialise(const M&, const ElementParameters&, const Corners<L, 2>& c,
+                                    const Given<L>& g, StateView<L> s) {
     s.store(length_field, norm(c.x[1] - c.x[0]));
     s.put(axis_field, beam_axis(c, g.orientation));
   }
-  static void lump(const ElementParameters& p, const Corners<double, 2>& c, const Given<double>&, double (&mass)[2],
-                   double (&inertia)[2]) {
+  static void lump(const ElementParameters& p, const Corners<double, 2>& c, const Given<double>&,
+                   double (&mass)[2], double (&inertia)[2]) {
     lump_beam(p, c, mass, inertia);
   }
 
   template <class L, class M>
-  FABRICA_FN static void forces(const M&, const ElementParameters& p, Real dt_previous, const Corners<L, 2>& c,
-                                StateView<L> s, CornerForces<L, 2>& out, Totals<L>& totals) {
+  FABRICA_FN static void forces(const M&, const ElementParameters& p, Real dt_previous,
+                                const Corners<L, 2>& c, StateView<L> s, CornerForces<L, 2>& out,
+                                Totals<L>& totals) {
     const L dt = L(dt_previous);
     const BeamFrame<L> e(c, dt, s.template get<Vec3<L>>(axis_field));
     s.put(axis_field, e.e2);
@@ -86,7 +90,8 @@ struct BeamSchwer {
  private:
   // equation (1): N T Ms1 Ms2 Mt1 Mt2
   template <class L>
-  FABRICA_FN static void resultants(const ElementParameters& p, const L& inverse, const L (&u)[6], L (&r)[6]) {
+  FABRICA_FN static void resultants(const ElementParameters& p, const L& inverse, const L (&u)[6],
+                                    L (&r)[6]) {
     const Real J = p.torsion != 0 ? p.torsion : p.iss + p.itt;
     r[0] = L(p.youngs * p.area) * inverse * u[0];
     r[1] = L(p.shear * J) * inverse * u[1];
@@ -108,7 +113,8 @@ struct BeamSchwer {
     return length / (L(sqrt(p.youngs / p.density)) * max(L(1.0), L(2.0) * bending));
   }
   template <class L>
-  FABRICA_FN static void corner_forces(const BeamFrame<L>& e, const L (&r)[6], CornerForces<L, 2>& out) {
+  FABRICA_FN static void corner_forces(const BeamFrame<L>& e, const L (&r)[6],
+                                       CornerForces<L, 2>& out) {
     const L inverse = L(1.0) / e.length;
     const Vec3<L> f{r[0], -(inverse * (r[4] + r[5])), inverse * (r[2] + r[3])};
     out.f[0] = e.global(f);

@@ -1,8 +1,5 @@
-// Tests of truss and beams: patch, rigid rotation, virtual power, cantilever, torsion, roll-up, frequency, stability.
-#include "element/beam_hughes_liu.h"
-#include "element/beam_schwer.h"
-#include "element/truss.h"
-
+// Tests of truss and beams: patch, rigid rotation, virtual power, cantilever, torsion, roll-up,
+// frequency, stability.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -11,7 +8,10 @@
 
 #include "base/lane_math.h"
 #include "base/pack.h"
+#include "element/beam_hughes_liu.h"
+#include "element/beam_schwer.h"
 #include "element/element_driver.h"
+#include "element/truss.h"
 #include "material/elastic.h"
 
 using namespace fabrica;
@@ -29,7 +29,8 @@ Mesh<E, ElasticLaw> straight(int n, double length, double b) {
   const Elastic e = Elastic::from_youngs(7.85e-6, 210, 0.3);
   m.law = {Real(e.density), Real(e.bulk), Real(e.shear)};
   m.moduli();
-  m.p.area = Real(b * b), m.p.iss = m.p.itt = Real(b * b * b * b / 12), m.p.torsion = Real(0.1406 * b * b * b * b);
+  m.p.area = Real(b * b), m.p.iss = m.p.itt = Real(b * b * b * b / 12),
+  m.p.torsion = Real(0.1406 * b * b * b * b);
   m.p.section_points = 4;
   for (int q = 0; q < 4; ++q) {
     m.p.section_s[q] = Real((q & 1 ? 0.5 : -0.5) * b / std::sqrt(3.0));
@@ -45,7 +46,8 @@ Mesh<E, ElasticLaw> straight(int n, double length, double b) {
 // length of a run in periods of the first bending mode of a cantilever, damped to rest
 template <class M>
 double first_mode(const M& m, double length) {
-  return 3.516 / (length * length) * std::sqrt(double(m.p.youngs) * m.p.iss / (double(m.p.density) * m.p.area));
+  return 3.516 / (length * length) *
+         std::sqrt(double(m.p.youngs) * m.p.iss / (double(m.p.density) * m.p.area));
 }
 
 }  // namespace
@@ -93,14 +95,16 @@ TEST_CASE_TEMPLATE("beams: a finite rigid rotation leaves no force", E, BeamSchw
 }
 
 // Virtual power of held resultants, and the balance of forces and moments.
-TEST_CASE_TEMPLATE("beams: corner forces are the transpose of the strain rates", E, BeamSchwer, BeamHughesLiu) {
+TEST_CASE_TEMPLATE("beams: corner forces are the transpose of the strain rates", E, BeamSchwer,
+                   BeamHughesLiu) {
   auto m = straight<E>(1, 3, 1);
   m.x[1] = {2, 1.5, -1};
   m.start(0);
   std::mt19937 random(7);
   std::uniform_real_distribution<double> u(-1, 1);
   auto shake = [&] {
-    for (int a = 0; a < 2; ++a) m.v[a] = {u(random), u(random), u(random)}, m.w[a] = {u(random), u(random), u(random)};
+    for (int a = 0; a < 2; ++a)
+      m.v[a] = {u(random), u(random), u(random)}, m.w[a] = {u(random), u(random), u(random)};
   };
   shake();
   m.dt = 1e-3;
@@ -116,12 +120,14 @@ TEST_CASE_TEMPLATE("beams: corner forces are the transpose of the strain rates",
     CHECK(std::abs(m.internal / m.dt + power) < 1e-4 * scale);
   }
   const Vec3d total = m.force[0] + m.force[1];
-  const Vec3d spin = cross(m.x[0], m.force[0]) + cross(m.x[1], m.force[1]) + m.moment[0] + m.moment[1];
+  const Vec3d spin =
+      cross(m.x[0], m.force[0]) + cross(m.x[1], m.force[1]) + m.moment[0] + m.moment[1];
   CHECK(norm(total) < 1e-12 + (mixed ? 1e-5 : 1e-13) * norm(m.force[0]));
   CHECK(norm(spin) < (mixed ? 1e-5 : 1e-13) * norm(m.force[0]) * 3);
 }
 
-// Cantilever with a tip force: w = P L^3/(3 E I) + P L/(k G A) for the shear-flexible beam; torsion T L/(G J) (V39).
+// Cantilever with a tip force: w = P L^3/(3 E I) + P L/(k G A) for the shear-flexible beam; torsion
+// T L/(G J) (V39).
 TEST_CASE_TEMPLATE("beams: cantilever and torsion", E, BeamSchwer, BeamHughesLiu) {
   const double length = 100, b = 5, P = 1e-3;
   const bool flexible = std::is_same_v<E, BeamHughesLiu>;
@@ -134,7 +140,8 @@ TEST_CASE_TEMPLATE("beams: cantilever and torsion", E, BeamSchwer, BeamHughesLiu
   while (m.time < 15 / w1)
     m.cycle([&](auto& mesh) { mesh.force[n].z += P, mesh.moment[n].x += 10 * P; });
   const double I = b * b * b * b / 12, A = b * b, G = 210 / 2.6;
-  const double exact = P * std::pow(length, 3) / (3 * 210 * I) + (flexible ? P * length / (5.0 / 6 * G * A) : 0);
+  const double exact =
+      P * std::pow(length, 3) / (3 * 210 * I) + (flexible ? P * length / (5.0 / 6 * G * A) : 0);
   MESSAGE("tip / exact = ", m.x[n].z / exact);
   CHECK(std::abs(m.x[n].z / exact - 1) < 0.01);
   double r[8];
@@ -159,7 +166,8 @@ TEST_CASE("beam: roll-up into a circle") {
   CHECK(gap < 0.005 * length);
 }
 
-// First frequency of a cantilever, 3.516/L^2 sqrt(EI/(rho A)); the energy of the undamped motion stays.
+// First frequency of a cantilever, 3.516/L^2 sqrt(EI/(rho A)); the energy of the undamped motion
+// stays.
 TEST_CASE_TEMPLATE("beams: first frequency of a cantilever", E, BeamSchwer, BeamHughesLiu) {
   const double length = 100, b = 2;
   const int n = 20;
@@ -185,7 +193,8 @@ TEST_CASE_TEMPLATE("beams: first frequency of a cantilever", E, BeamSchwer, Beam
   }
   REQUIRE(zeros.size() == 2);
   const double found = pi / (zeros[1] - zeros[0]);
-  MESSAGE("frequency / exact = ", found / exact, ", energy / start = ", (m.kinetic() + m.internal) / start);
+  MESSAGE("frequency / exact = ", found / exact,
+          ", energy / start = ", (m.kinetic() + m.internal) / start);
   CHECK(std::abs(found / exact - 1) < 0.01);
   CHECK(std::abs((m.kinetic() + m.internal) / start - 1) < 1e-3);
 }
@@ -212,7 +221,8 @@ TEST_CASE_TEMPLATE("beams: the estimated step is stable", E, Truss, BeamSchwer, 
   }
 }
 
-TEST_CASE_TEMPLATE("beams: a pack gives the bits of the scalar lanes", E, Truss, BeamSchwer, BeamHughesLiu) {
+TEST_CASE_TEMPLATE("beams: a pack gives the bits of the scalar lanes", E, Truss, BeamSchwer,
+                   BeamHughesLiu) {
   constexpr int W = native_width < block_size ? native_width : block_size;
   using P = Pack<Real, W>;
   auto m = straight<E>(1, 1, 0.2);
@@ -226,14 +236,17 @@ TEST_CASE_TEMPLATE("beams: a pack gives the bits of the scalar lanes", E, Truss,
   for (int i = 0; i < W; ++i)
     for (int a = 0; a < 2; ++a)
       for (int d = 0; d < 3; ++d) {
-        s[i].x[a][d] = Real(a + 0.3 * u(random)), s[i].v[a][d] = Real(u(random)), s[i].w[a][d] = Real(u(random));
-        set(c.x[a][d], i, s[i].x[a][d]), set(c.v[a][d], i, s[i].v[a][d]), set(c.w[a][d], i, s[i].w[a][d]);
+        s[i].x[a][d] = Real(a + 0.3 * u(random)), s[i].v[a][d] = Real(u(random)),
+        s[i].w[a][d] = Real(u(random));
+        set(c.x[a][d], i, s[i].x[a][d]), set(c.v[a][d], i, s[i].v[a][d]),
+            set(c.w[a][d], i, s[i].w[a][d]);
       }
   Given<P> gp{};
   Given<Real> gs{};
   gp.orientation = {P(0.0), P(1.0), P(0.0)}, gs.orientation = {0, 1, 0};
   E::template initialise<P, ElasticLaw>(m.law, m.p, c, gp, {wide.data()});
-  for (int i = 0; i < W; ++i) E::template initialise<Real, ElasticLaw>(m.law, m.p, s[i], gs, {narrow.data() + i});
+  for (int i = 0; i < W; ++i)
+    E::template initialise<Real, ElasticLaw>(m.law, m.p, s[i], gs, {narrow.data() + i});
   for (int k = 0; k < 3; ++k) {
     CornerForces<P, 2> fp;
     Totals<P> tp;

@@ -1,5 +1,6 @@
 #pragma once
-// A small explicit driver for the tests of element kernels: a mesh with double nodes, one lane per element.
+// A small explicit driver for the tests of element kernels: a mesh with double nodes, one lane per
+// element.
 //   v(n+1/2) = (1 - c dt) v(n-1/2) + dt f/m,  x(n+1) = x(n) + dt v(n+1/2)   (c: mass damping)
 #include <functional>
 #include <vector>
@@ -107,26 +108,30 @@ struct Mesh {
   double kinetic() const {
     double k = 0;
     for (std::size_t n = 0; n < x.size(); ++n)
-      k += 0.5 * mass[n] * dot(v[n], v[n]) + (E::rotations ? 0.5 * inertia[n] * dot(w[n], w[n]) : 0.0);
+      k += 0.5 * mass[n] * dot(v[n], v[n]) +
+           (E::rotations ? 0.5 * inertia[n] * dot(w[n], w[n]) : 0.0);
     return k;
   }
 };
 
 // equally spaced Gauss points of the thickness, 1 to 5
 inline void gauss_layers(ElementParameters& p, int n) {
-  static const double z[5][5] = {{0},
-                                 {-0.5773502691896257, 0.5773502691896257},
-                                 {-0.7745966692414834, 0, 0.7745966692414834},
-                                 {-0.8611363115940526, -0.3399810435848563, 0.3399810435848563, 0.8611363115940526},
-                                 {-0.906179845938664, -0.5384693101056831, 0, 0.5384693101056831, 0.906179845938664}};
-  static const double w[5][5] = {{1},
-                                 {0.5, 0.5},
-                                 {5. / 18, 8. / 18, 5. / 18},
-                                 {0.17392742256872692, 0.32607257743127308, 0.32607257743127308, 0.17392742256872692},
-                                 {0.11846344252809454, 0.23931433524968324, 0.28444444444444444, 0.23931433524968324,
-                                  0.11846344252809454}};
+  static const double z[5][5] = {
+      {0},
+      {-0.5773502691896257, 0.5773502691896257},
+      {-0.7745966692414834, 0, 0.7745966692414834},
+      {-0.8611363115940526, -0.3399810435848563, 0.3399810435848563, 0.8611363115940526},
+      {-0.906179845938664, -0.5384693101056831, 0, 0.5384693101056831, 0.906179845938664}};
+  static const double w[5][5] = {
+      {1},
+      {0.5, 0.5},
+      {5. / 18, 8. / 18, 5. / 18},
+      {0.17392742256872692, 0.32607257743127308, 0.32607257743127308, 0.17392742256872692},
+      {0.11846344252809454, 0.23931433524968324, 0.28444444444444444, 0.23931433524968324,
+       0.11846344252809454}};
   p.layers = n;
-  for (int q = 0; q < n; ++q) p.layer_z[q] = Real(z[n - 1][q]), p.layer_weight[q] = Real(w[n - 1][q]);
+  for (int q = 0; q < n; ++q)
+    p.layer_z[q] = Real(z[n - 1][q]), p.layer_weight[q] = Real(w[n - 1][q]);
 }
 
 // n x n quadrilaterals over a square of side a in the plane z = 0

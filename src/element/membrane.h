@@ -1,7 +1,9 @@
 #pragma once
-// Membranes (ELFORM 5 and 9): plane stress in the surface, no bending, no transverse shear, no rotations.
-// ELFORM 5: one point with B1, B2 as in shell_bt.h and control of the in-plane hourglass modes
-//   q_a = gamma.v_a,  Q_a += QM E h A BB/8 q_a dt  (IHQ >= 4),  Q_a = QM E h A BB/8 q_a sqrt(A)/c  (viscous)  (1)
+// Membranes (ELFORM 5 and 9): plane stress in the surface, no bending, no transverse shear, no
+// rotations. ELFORM 5: one point with B1, B2 as in shell_bt.h and control of the in-plane hourglass
+// modes
+//   q_a = gamma.v_a,  Q_a += QM E h A BB/8 q_a dt  (IHQ >= 4),  Q_a = QM E h A BB/8 q_a sqrt(A)/c
+//     (viscous)  (1)
 // ELFORM 9: 2 x 2 points, Almansi strain at each.
 // Source: Belytschko, Lin, Tsay 1984 (membrane part); Flanagan and Belytschko 1981 (hourglass).
 #include "element/shell_bt.h"
@@ -21,16 +23,17 @@ struct MembranePoint {
   }
   // n: h s; only the membrane members of the result count
   template <class L>
-  FABRICA_FN static ShellResultants<L> advance(const M& law, const ShellStrain<L>& e, const L& h, Point<L> point,
-                                               StateView<L> s) {
+  FABRICA_FN static ShellResultants<L> advance(const M& law, const ShellStrain<L>& e, const L& h,
+                                               Point<L> point, StateView<L> s) {
     using MaterialState = typename M::template State<L>;
     const L zero = L(0.0);
-    ShellResultants<L> r{zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, L(1.0), L(1.0)};
+    ShellResultants<L> r{zero, zero, zero, zero, zero,   zero,
+                         zero, zero, zero, zero, L(1.0), L(1.0)};
     const L initial = point.modulus;
     Sym3<L> old{s.load(0), s.load(1), zero, s.load(2), zero, zero};
     MaterialState state = s.template get<MaterialState>(material);
-    Sym3<L> now =
-        plane_stress(law, old, e.xx, e.yy, L(2.0) * e.xy, zero, zero, L(1.0), point, state, r.thinning);
+    Sym3<L> now = plane_stress(law, old, e.xx, e.yy, L(2.0) * e.xy, zero, zero, L(1.0), point,
+                               state, r.thinning);
     if constexpr (M::can_fail) {
       r.alive = min(s.load(alive), point.alive);
       s.store(alive, r.alive);
@@ -55,8 +58,8 @@ struct MembranePoint {
 };
 
 // mass of a membrane: a quarter to each corner
-inline void lump_membrane(const ElementParameters& p, const Corners<double, 4>& c, const Given<double>& g,
-                          double (&mass)[4]) {
+inline void lump_membrane(const ElementParameters& p, const Corners<double, 4>& c,
+                          const Given<double>& g, double (&mass)[4]) {
   const double h = 0.25 * (g.thickness[0] + g.thickness[1] + g.thickness[2] + g.thickness[3]);
   const double area = 0.5 * norm(cross(c.x[2] - c.x[0], c.x[3] - c.x[1]));
   for (double& m : mass) m = 0.25 * area * (double(p.density) * h + double(p.area_mass));
@@ -64,8 +67,8 @@ inline void lump_membrane(const ElementParameters& p, const Corners<double, 4>& 
 
 // adds stiffness damping of the membrane part only
 template <class L>
-FABRICA_FN L damp_membrane(const ElementParameters& p, ShellStrain<L> e, const L& h, const L& dt, const L& step,
-                           ShellResultants<L>& r) {
+FABRICA_FN L damp_membrane(const ElementParameters& p, ShellStrain<L> e, const L& h, const L& dt,
+                           const L& step, ShellResultants<L>& r) {
   e.kxx = e.kyy = e.kxy = e.yz = e.zx = L(0.0);
   return damp_shell(p, e, h, dt, step, r);
 }
@@ -88,19 +91,21 @@ struct Membrane {
     return quad_axes<ShellFrame::side>(x);
   }
   template <class L, class M>
-  FABRICA_FN static void initialise(const M&, const ElementParameters&, const Corners<L, 4>&, const Given<L>& g,
-                                    StateView<L> s) {
-    s.store(thickness_field, L(0.25) * (g.thickness[0] + g.thickness[1] + g.thickness[2] + g.thickness[3]));
+  FABRICA_FN static void initialise(const M&, const ElementParameters&, const Corners<L, 4>&,
+                                    const Given<L>& g, StateView<L> s) {
+    s.store(thickness_field,
+            L(0.25) * (g.thickness[0] + g.thickness[1] + g.thickness[2] + g.thickness[3]));
     MembranePoint<M>::start(point_view<L>(s));
   }
-  static void lump(const ElementParameters& p, const Corners<double, 4>& c, const Given<double>& g, double (&mass)[4],
-                   double (&)[4]) {
+  static void lump(const ElementParameters& p, const Corners<double, 4>& c, const Given<double>& g,
+                   double (&mass)[4], double (&)[4]) {
     lump_membrane(p, c, g, mass);
   }
 
   template <class L, class M>
-  FABRICA_FN static void forces(const M& material, const ElementParameters& p, Real dt_previous, const Corners<L, 4>& c,
-                                StateView<L> s, CornerForces<L, 4>& out, Totals<L>& totals) {
+  FABRICA_FN static void forces(const M& material, const ElementParameters& p, Real dt_previous,
+                                const Corners<L, 4>& c, StateView<L> s, CornerForces<L, 4>& out,
+                                Totals<L>& totals) {
     const L dt = L(dt_previous), zero = L(0.0);
     const ShellBT::Geometry<L> g(c.x);
     const Vec3<L> v31 = g.axes.local(c.v[2] - c.v[0]), v42 = g.axes.local(c.v[3] - c.v[1]);
@@ -113,7 +118,7 @@ struct Membrane {
 
     L h = s.load(thickness_field);
     const L root_area = sqrt(g.area);
-    const Point<L> point{dt,          L(1.0), root_area, L(p.bulk + Real(4.0 / 3.0) * p.shear),
+    const Point<L> point{dt,         L(1.0), root_area, L(p.bulk + Real(4.0 / 3.0) * p.shear),
                          L(p.shear), L(1.0)};
     ShellResultants<L> r = MembranePoint<M>::advance(material, e, h, point, point_view<L>(s));
     if (p.thickness_update) h *= L(1.0) + r.thinning;
@@ -153,7 +158,8 @@ struct Membrane {
       const L n2 = g.half_inverse * fma(g.area, n[a][1], -(Q[a] * g.hy));
       P[a] = fma(g.y42, n1, -(g.x42 * n2)), R[a] = fma(g.y31, n1, -(g.x31 * n2));
     }
-    const Vec3<L> Pg = g.axes.global(P.x, P.y), Rg = g.axes.global(R.x, R.y), Qg = g.axes.global(Q[0], Q[1]);
+    const Vec3<L> Pg = g.axes.global(P.x, P.y), Rg = g.axes.global(R.x, R.y),
+                  Qg = g.axes.global(Q[0], Q[1]);
     out.f[0] = Pg - Qg, out.f[2] = -(Pg + Qg), out.f[1] = Qg - Rg, out.f[3] = Rg + Qg;
   }
 

@@ -1,6 +1,7 @@
 #pragma once
-// Membrane with 2 x 2 points (ELFORM 9): plane stress at each point, no hourglass modes, no rotations.
-// Geometry and derivatives as in shell_full.h, equation (1); Almansi strain at each point.
+// Membrane with 2 x 2 points (ELFORM 9): plane stress at each point, no hourglass modes, no
+// rotations. Geometry and derivatives as in shell_full.h, equation (1); Almansi strain at each
+// point.
 #include "element/membrane.h"
 #include "element/shell_full.h"
 
@@ -24,31 +25,34 @@ struct MembraneFull {
     return quad_axes<ShellFrame::invariant>(x);
   }
   template <class L, class M>
-  FABRICA_FN static void initialise(const M&, const ElementParameters&, const Corners<L, 4>&, const Given<L>& g,
-                                    StateView<L> s) {
-    s.store(thickness_field, L(0.25) * (g.thickness[0] + g.thickness[1] + g.thickness[2] + g.thickness[3]));
+  FABRICA_FN static void initialise(const M&, const ElementParameters&, const Corners<L, 4>&,
+                                    const Given<L>& g, StateView<L> s) {
+    s.store(thickness_field,
+            L(0.25) * (g.thickness[0] + g.thickness[1] + g.thickness[2] + g.thickness[3]));
     for (int k = 0; k < 4; ++k) MembranePoint<M>::start(point_view<M>(s, k));
   }
-  static void lump(const ElementParameters& p, const Corners<double, 4>& c, const Given<double>& g, double (&mass)[4],
-                   double (&)[4]) {
+  static void lump(const ElementParameters& p, const Corners<double, 4>& c, const Given<double>& g,
+                   double (&mass)[4], double (&)[4]) {
     lump_membrane(p, c, g, mass);
   }
 
   template <class L, class M>
-  FABRICA_FN static void forces(const M& material, const ElementParameters& p, Real dt_previous, const Corners<L, 4>& c,
-                                StateView<L> s, CornerForces<L, 4>& out, Totals<L>& totals) {
+  FABRICA_FN static void forces(const M& material, const ElementParameters& p, Real dt_previous,
+                                const Corners<L, 4>& c, StateView<L> s, CornerForces<L, 4>& out,
+                                Totals<L>& totals) {
     using Modes = ShellFull::Modes<L>;
     using Place = ShellFull::Place<L>;
     const L dt = L(dt_previous), zero = L(0.0);
     const ShellFull::Geometry<L> g(c.x);
     Vec3<L> v[4];
     for (int a = 0; a < 4; ++a) v[a] = g.axes.local(c.v[a]);
-    const Modes u[3] = {Modes(v[0].x, v[1].x, v[2].x, v[3].x), Modes(v[0].y, v[1].y, v[2].y, v[3].y),
+    const Modes u[3] = {Modes(v[0].x, v[1].x, v[2].x, v[3].x),
+                        Modes(v[0].y, v[1].y, v[2].y, v[3].y),
                         Modes(v[0].z, v[1].z, v[2].z, v[3].z)};
     const Place centre(g.mx, g.my, 0, 0);
     const L area = L(4.0) * centre.D;
     L h = s.load(thickness_field), thinning = zero, stiffening = L(1.0);
-    const Point<L> point{dt,          L(1.0), sqrt(area), L(p.bulk + Real(4.0 / 3.0) * p.shear),
+    const Point<L> point{dt,         L(1.0), sqrt(area), L(p.bulk + Real(4.0 / 3.0) * p.shear),
                          L(p.shear), L(1.0)};
     const L initial_step = quad_step(p, c.x, area, L(1.0));
     Modes fx{zero, zero, zero, zero}, fy = fx;
@@ -76,7 +80,8 @@ struct MembraneFull {
     s.store(thickness_field, h);
     totals.time_step = initial_step / sqrt(stiffening);
     totals.volume = area * h;
-    constexpr double sign_xi[4] = {-1, 1, 1, -1}, sign_eta[4] = {-1, -1, 1, 1}, sign_h[4] = {1, -1, 1, -1};
+    constexpr double sign_xi[4] = {-1, 1, 1, -1}, sign_eta[4] = {-1, -1, 1, 1},
+                     sign_h[4] = {1, -1, 1, -1};
     for (int a = 0; a < 4; ++a) {
       auto corner = [&](const Modes& m) {
         return L(-0.25) * fma(L(sign_xi[a]), m.xi, fma(L(sign_eta[a]), m.eta, L(sign_h[a]) * m.h));
@@ -96,7 +101,8 @@ struct MembraneFull {
   template <class M>
   static Real plastic_strain(const ElementParameters&, StateView<Real> s, int) {
     Real sum = 0;
-    for (int k = 0; k < 4; ++k) sum += Real(0.25) * MembranePoint<M>::plastic_strain(point_view<M>(s, k));
+    for (int k = 0; k < 4; ++k)
+      sum += Real(0.25) * MembranePoint<M>::plastic_strain(point_view<M>(s, k));
     return sum;
   }
   template <class M>

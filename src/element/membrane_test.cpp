@@ -1,6 +1,6 @@
-// Tests of the membranes: patch state, rigid rotation, virtual power, stretched bar, stability, lane widths.
+// Tests of the membranes: patch state, rigid rotation, virtual power, stretched bar, stability,
+// lane widths.
 #include "element/membrane.h"
-#include "element/membrane_full.h"
 
 #include <doctest/doctest.h>
 
@@ -11,6 +11,7 @@
 #include "base/lane_math.h"
 #include "base/pack.h"
 #include "element/element_driver.h"
+#include "element/membrane_full.h"
 #include "material/elastic.h"
 
 using namespace fabrica;
@@ -41,7 +42,8 @@ Mesh<E, ElasticLaw> one(double warp = 0) {
 
 }  // namespace
 
-// v = G x: sigma = plane stress modulus times G dt; the Almansi strain differs by dt^2 G^T G / 2, here 2e-7 of it.
+// v = G x: sigma = plane stress modulus times G dt; the Almansi strain differs by dt^2 G^T G / 2,
+// here 2e-7 of it.
 TEST_CASE_TEMPLATE("membranes: constant strain gives exact stress", E, Membrane, MembraneFull) {
   auto m = one<E>();
   m.start(0.1);
@@ -63,7 +65,8 @@ TEST_CASE_TEMPLATE("membranes: constant strain gives exact stress", E, Membrane,
   CHECK(std::abs(g.xy - c * 0.7 * exy) < tolerance);
 }
 
-TEST_CASE_TEMPLATE("membranes: a finite rigid rotation leaves no stress", E, Membrane, MembraneFull) {
+TEST_CASE_TEMPLATE("membranes: a finite rigid rotation leaves no stress", E, Membrane,
+                   MembraneFull) {
   auto m = one<E>();
   m.start(0.1);
   const auto first = m.x;
@@ -83,7 +86,8 @@ TEST_CASE_TEMPLATE("membranes: a finite rigid rotation leaves no stress", E, Mem
   CHECK(std::max({std::abs(s.xx), std::abs(s.yy), std::abs(s.xy)}) / 210 < (mixed ? 3e-6 : 1e-12));
 }
 
-TEST_CASE_TEMPLATE("membranes: corner forces are the transpose of the strain rates", E, Membrane, MembraneFull) {
+TEST_CASE_TEMPLATE("membranes: corner forces are the transpose of the strain rates", E, Membrane,
+                   MembraneFull) {
   auto m = one<E>(0.04);
   m.start(0.1);
   std::mt19937 random(7);
@@ -121,7 +125,8 @@ TEST_CASE_TEMPLATE("membranes: stretched sheet", E, Membrane, MembraneFull) {
     if (m.x[k].x == a) edge.push_back(int(k));
   while (m.time < 20 / first)
     m.cycle([&](auto& mesh) {
-      for (const int k : edge) mesh.force[k].x += (k == edge.front() || k == edge.back() ? 0.5 : 1.0) * F / n;
+      for (const int k : edge)
+        mesh.force[k].x += (k == edge.front() || k == edge.back() ? 0.5 : 1.0) * F / n;
     });
   const double exact = F / (h * 210);
   CHECK(std::abs((m.x[edge[2]].x - a) / exact - 1) < 1e-3);
@@ -144,7 +149,8 @@ TEST_CASE_TEMPLATE("membranes: the estimated step is stable", E, Membrane, Membr
   CHECK(last < 1.2 * first);
 }
 
-TEST_CASE_TEMPLATE("membranes: a pack gives the bits of the scalar lanes", E, Membrane, MembraneFull) {
+TEST_CASE_TEMPLATE("membranes: a pack gives the bits of the scalar lanes", E, Membrane,
+                   MembraneFull) {
   constexpr int W = native_width < block_size ? native_width : block_size;
   using P = Pack<Real, W>;
   std::mt19937 random(3);
@@ -166,7 +172,8 @@ TEST_CASE_TEMPLATE("membranes: a pack gives the bits of the scalar lanes", E, Me
   Given<Real> gs{};
   for (int a = 0; a < 4; ++a) gp.thickness[a] = P(0.1), gs.thickness[a] = Real(0.1);
   E::template initialise<P, ElasticLaw>(m.law, m.p, c, gp, {wide.data()});
-  for (int i = 0; i < W; ++i) E::template initialise<Real, ElasticLaw>(m.law, m.p, s[i], gs, {narrow.data() + i});
+  for (int i = 0; i < W; ++i)
+    E::template initialise<Real, ElasticLaw>(m.law, m.p, s[i], gs, {narrow.data() + i});
   for (int k = 0; k < 3; ++k) {
     CornerForces<P, 4> fp;
     Totals<P> tp;

@@ -1,19 +1,23 @@
 #pragma once
-// What all shell elements share: frame, layers through the thickness, resultants, rigid-body projection, time step.
+// What all shell elements share: frame, layers through the thickness, resultants, rigid-body
+// projection, time step.
 //
-// Lamina at height z over the reference surface; strain increments of a step in the element's frame:
-//   e_ab(z) = e_ab + z k_ab,   e_az constant                                                               (1)
-//   n_ab = h sum_q w_q s_ab,   m_ab = h sum_q w_q z_q s_ab,   z_q = h/2 (zeta_q - NLOC)                     (2)
-// Increments are Almansi's, measured in the end geometry with G = velocity gradient of the half step:
-//   e = dt (G + G^T)/2 - dt^2/2 G^T G                                                                      (3)
+// Lamina at height z over the reference surface; strain increments of a step in the element's
+// frame:
+//   e_ab(z) = e_ab + z k_ab,   e_az constant                                                    (1)
+//   n_ab = h sum_q w_q s_ab,   m_ab = h sum_q w_q z_q s_ab,   z_q = h/2 (zeta_q - NLOC)         (2)
+// Increments are Almansi's, measured in the end geometry with G = velocity gradient of the half
+// step:
+//   e = dt (G + G^T)/2 - dt^2/2 G^T G                                                           (3)
 // so that a rigid rotation of finite size leaves no strain.
 // Projection: the rigid motion (a, b) that fits the corner velocities best is taken out of (v, w):
-//   b = J^-1 sum r x v,  J = sum (r.r I - r r^T),  v' = v - a - b x r,  w' = w - b                          (4)
-//   then the drilling rate about the corner's own normal p:  w" = w' - (w'.p) p                            (5)
+//   b = J^-1 sum r x v,  J = sum (r.r I - r r^T),  v' = v - a - b x r,  w' = w - b              (4)
+//   then the drilling rate about the corner's own normal p:  w" = w' - (w'.p) p                 (5)
 // and the forces pass through the transpose: m' = m" - (m".p) p,  f = f' - mean f' - (J^-1 t) x r,
-// t = sum (r x f' + m'). Facets of a curved surface can hand on only moments across their own normals; with (5)
-// the corner normal, which neighbours share, takes that place.
-// Sources: Belytschko, Lin, Tsay 1984; Rankin and Nour-Omid 1988 (projectors); dt: Hallquist, theory manual.
+// t = sum (r x f' + m'). Facets of a curved surface can hand on only moments across their own
+// normals; with (5) the corner normal, which neighbours share, takes that place.
+// Sources: Belytschko, Lin, Tsay 1984; Rankin and Nour-Omid 1988 (projectors); dt: Hallquist,
+// theory manual.
 #include <type_traits>
 
 #include "element/kernel.h"
@@ -21,8 +25,9 @@
 
 namespace fabrica {
 
-// How the in-plane axes follow the corners: LS-DYNA's default takes e1 along side 1-2, the invariant choice
-// halves the angle between the mid-lines and does not depend on where the numbering starts.
+// How the in-plane axes follow the corners: LS-DYNA's default takes e1 along side 1-2, the
+// invariant choice halves the angle between the mid-lines and does not depend on where the
+// numbering starts.
 enum class ShellFrame { side, invariant };
 
 // rows: the local axes
@@ -67,7 +72,8 @@ FABRICA_FN ShellAxes<L> quad_axes(const Vec3<L> (&x)[4]) {
     const Vec3<L> a = r31 - r42, b = r31 + r42;
     const Vec3<L> ua = (L(1.0) / norm(a)) * a, ub = (L(1.0) / norm(b)) * b;
     const Vec3<L> sum = ua + ub, difference = ua - ub;
-    return shell_axes(cross(r31, r42), (L(1.0) / norm(sum)) * sum + (L(1.0) / norm(difference)) * difference);
+    return shell_axes(cross(r31, r42),
+                      (L(1.0) / norm(sum)) * sum + (L(1.0) / norm(difference)) * difference);
   }
 }
 
@@ -118,25 +124,27 @@ struct ShellLayers {
       return 0;
   }
 
-  // Advances all layers and integrates them, equations (1) and (2). start: the point as elastic; the laws of the
-  // layers each see a copy.
+  // Advances all layers and integrates them, equations (1) and (2). start: the point as elastic;
+  // the laws of the layers each see a copy.
   template <class L>
-  FABRICA_FN static ShellResultants<L> advance(const M& law, const ElementParameters& p, const ShellStrain<L>& e,
-                                               const L& h, const Point<L>& start, StateView<L> s) {
+  FABRICA_FN static ShellResultants<L> advance(const M& law, const ElementParameters& p,
+                                               const ShellStrain<L>& e, const L& h,
+                                               const Point<L>& start, StateView<L> s) {
     using MaterialState = typename M::template State<L>;
     const L zero = L(0.0), half_h = L(0.5) * h;
     ShellResultants<L> r{zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, L(1.0), zero};
     L modulus = start.modulus;
     for (int q = 0; q < p.layers; ++q, s.block += stride * block_size) {
       const L z = half_h * L(p.layer_z[q] - p.reference_location), w = L(p.layer_weight[q]);
-      const Sym3<L> strain{fma(z, e.kxx, e.xx), fma(z, e.kyy, e.yy), zero, fma(z, e.kxy, e.xy), e.yz, e.zx};
+      const Sym3<L> strain{
+          fma(z, e.kxx, e.xx), fma(z, e.kyy, e.yy), zero, fma(z, e.kxy, e.xy), e.yz, e.zx};
       Sym3<L> old = stress(s, 0);
       MaterialState state = s.template get<MaterialState>(material);
       Point<L> point = start;
       L dzz = zero;
       const L two = L(2.0);
-      Sym3<L> now = plane_stress(law, old, strain.xx, strain.yy, two * strain.xy, two * strain.yz, two * strain.zx,
-                                 L(p.shear_factor), point, state, dzz);
+      Sym3<L> now = plane_stress(law, old, strain.xx, strain.yy, two * strain.xy, two * strain.yz,
+                                 two * strain.zx, L(p.shear_factor), point, state, dzz);
       if constexpr (M::can_fail) {
         const L live = min(s.load(alive), point.alive);
         s.store(alive, live);
@@ -144,7 +152,8 @@ struct ShellLayers {
         now = live * now;
         old = live * old;
       }
-      s.store(0, now.xx), s.store(1, now.yy), s.store(2, now.xy), s.store(3, now.yz), s.store(4, now.zx);
+      s.store(0, now.xx), s.store(1, now.yy), s.store(2, now.xy), s.store(3, now.yz),
+          s.store(4, now.zx);
       s.put(material, state);
       add(r, w, z, old, now, strain);
       r.thinning = fma(w, dzz, r.thinning);
@@ -191,7 +200,8 @@ struct ShellLayers {
   }
 };
 
-// Velocity gradient of the reference surface in the frame: columns d/dx, d/dy, and the mean angular velocity.
+// Velocity gradient of the reference surface in the frame: columns d/dx, d/dy, and the mean angular
+// velocity.
 template <class L>
 struct ShellGradient {
   Vec3<L> x, y;  // v,x and v,y
@@ -210,16 +220,21 @@ FABRICA_FN void almansi(const ShellGradient<L>& g, const L& dt, ShellStrain<L>& 
   e.yz = half * (g.y.z - g.wx - dt * (fma(g.y.x, g.wy, -(g.y.y * g.wx)) + L(0.5) * g.wy * spin));
 }
 
-// Stiffness damping of the part, beta C : D, added to the resultants; returns the energy it takes per area.
+// Stiffness damping of the part, beta C : D, added to the resultants; returns the energy it takes
+// per area.
 template <class L>
-FABRICA_FN L damp_shell(const ElementParameters& p, const ShellStrain<L>& e, const L& h, const L& dt, const L& step,
-                        ShellResultants<L>& r) {
+FABRICA_FN L damp_shell(const ElementParameters& p, const ShellStrain<L>& e, const L& h,
+                        const L& dt, const L& step, ShellResultants<L>& r) {
   const L beta = p.stiffness_damping > 0 ? L(p.stiffness_damping) * step : L(-p.stiffness_damping);
   const L rate = select(dt > L(0.0), beta / max(dt, L(1e-30)), L(0.0));
-  const L direct = rate * h * L(p.youngs / (1 - p.poisson * p.poisson)), cross = L(p.poisson) * direct;
-  const L twice = rate * h * L(2 * p.shear), shear = L(p.shear_factor) * twice, bend = h * h * L(1.0 / 12.0);
-  const L nxx = direct * e.xx + cross * e.yy, nyy = direct * e.yy + cross * e.xx, nxy = twice * e.xy;
-  const L mxx = bend * (direct * e.kxx + cross * e.kyy), myy = bend * (direct * e.kyy + cross * e.kxx);
+  const L direct = rate * h * L(p.youngs / (1 - p.poisson * p.poisson)),
+          cross = L(p.poisson) * direct;
+  const L twice = rate * h * L(2 * p.shear), shear = L(p.shear_factor) * twice,
+          bend = h * h * L(1.0 / 12.0);
+  const L nxx = direct * e.xx + cross * e.yy, nyy = direct * e.yy + cross * e.xx,
+          nxy = twice * e.xy;
+  const L mxx = bend * (direct * e.kxx + cross * e.kyy),
+          myy = bend * (direct * e.kyy + cross * e.kxx);
   const L mxy = bend * twice * e.kxy;
   r.nxx += nxx, r.nyy += nyy, r.nxy += nxy;
   r.mxx += mxx, r.myy += myy, r.mxy += mxy;
@@ -237,7 +252,8 @@ inline Real bar_speed(const ElementParameters& p) { return sqrt(p.youngs / p.den
 
 // Stable step of a quadrilateral by ISDO; faster: ratio of the sound speed to the initial one.
 template <class L>
-FABRICA_FN L quad_step(const ElementParameters& p, const Vec3<L> (&x)[4], const L& area, const L& faster) {
+FABRICA_FN L quad_step(const ElementParameters& p, const Vec3<L> (&x)[4], const L& area,
+                       const L& faster) {
   L longest = L(0.0), shortest = L(1e30);
   for (int a = 0; a < 4; ++a) {
     const Vec3<L> side = x[(a + 1) & 3] - x[a];
@@ -253,13 +269,15 @@ FABRICA_FN L quad_step(const ElementParameters& p, const Vec3<L> (&x)[4], const 
   return length / (L(p.time_step_option == 2 ? bar_speed(p) : plate_speed(p)) * faster);
 }
 
-// Lumped rotary inertia of a corner of mass m: the bending frequency stays below the membrane frequency.
+// Lumped rotary inertia of a corner of mass m: the bending frequency stays below the membrane
+// frequency.
 inline double shell_inertia(double m, double h, double area, double offset) {
   const double own = h * h / 12 + offset * offset;
   return m * (own > area / 8 ? own : area / 8);
 }
 
-// Rigid motion of corners and its removal, equation (4). Everything in the frame, about the mean corner.
+// Rigid motion of corners and its removal, equation (4). Everything in the frame, about the mean
+// corner.
 template <class L, int N>
 struct RigidProjection {
   Vec3<L> r[N];
@@ -311,10 +329,11 @@ struct DrillProjection {
   }
 };
 
-// Corner motion without rigid motion and drilling. It is taken out about the mid-step corners, where a finite
-// rotation is exactly v = b x r.
+// Corner motion without rigid motion and drilling. It is taken out about the mid-step corners,
+// where a finite rotation is exactly v = b x r.
 template <class L>
-FABRICA_FN void project_motion(const Corners<L, 4>& c, const L& dt, Vec3<L> (&v)[4], Vec3<L> (&w)[4]) {
+FABRICA_FN void project_motion(const Corners<L, 4>& c, const L& dt, Vec3<L> (&v)[4],
+                               Vec3<L> (&w)[4]) {
   Vec3<L> x[4];
   for (int a = 0; a < 4; ++a) v[a] = c.v[a], w[a] = c.w[a], x[a] = c.x[a] - (L(0.5) * dt) * c.v[a];
   RigidProjection<L, 4>(x).remove(v, w);

@@ -1,14 +1,15 @@
 #pragma once
-// Fully integrated quadrilateral shell (ELFORM 16, -16): 2 x 2 points in the plane, layers through the thickness.
-// A field of the corners is u = mean + u_xi xi + u_eta eta + u_h xi eta; at a point
+// Fully integrated quadrilateral shell (ELFORM 16, -16): 2 x 2 points in the plane, layers through
+// the thickness. A field of the corners is u = mean + u_xi xi + u_eta eta + u_h xi eta; at a point
 //   u,xi = u_xi + eta u_h,  u,eta = u_eta + xi u_h,
-//   u,x = (y,eta u,xi - y,xi u,eta)/D,  u,y = (x,xi u,eta - x,eta u,xi)/D,  D = x,xi y,eta - x,eta y,xi      (1)
-// Membrane: normal strains at the points, shear strain of the centre (no locking in in-plane bending).
-// Curvature: at the points. Transverse shear: tied on the sides (ANS)
+//   u,x = (y,eta u,xi - y,xi u,eta)/D,  u,y = (x,xi u,eta - x,eta u,xi)/D,  D = x,xi y,eta - x,eta
+//     y,xi      (1)
+// Membrane: normal strains at the points, shear strain of the centre (no locking in in-plane
+// bending). Curvature: at the points. Transverse shear: tied on the sides (ANS)
 //   g12 = (vz2 - vz1)/2 + x21 (wy1 + wy2)/4 - y21 (wx1 + wx2)/4 on eta = -1, g43 on eta = +1,
-//   g14, g23 on xi = -1, +1; linear between, and turned to x, y by the inverse Jacobian                     (2)
-// Rigid motion and drilling are taken out first (shell.h, 4 and 5), which makes warped elements invariant and finite
-// rotations free of strain; forces pass through the transpose.
+//   g14, g23 on xi = -1, +1; linear between, and turned to x, y by the inverse Jacobian         (2)
+// Rigid motion and drilling are taken out first (shell.h, 4 and 5), which makes warped elements
+// invariant and finite rotations free of strain; forces pass through the transpose.
 // Sources: Dvorkin and Bathe, Eng. Comput. 1 (1984) 77; Rankin and Nour-Omid 1988.
 #include "element/shell.h"
 
@@ -33,14 +34,15 @@ struct ShellFull {
   }
 
   template <class L, class M>
-  FABRICA_FN static void initialise(const M&, const ElementParameters& p, const Corners<L, 4>&, const Given<L>& g,
-                                    StateView<L> s) {
-    s.store(thickness_field, L(0.25) * (g.thickness[0] + g.thickness[1] + g.thickness[2] + g.thickness[3]));
+  FABRICA_FN static void initialise(const M&, const ElementParameters& p, const Corners<L, 4>&,
+                                    const Given<L>& g, StateView<L> s) {
+    s.store(thickness_field,
+            L(0.25) * (g.thickness[0] + g.thickness[1] + g.thickness[2] + g.thickness[3]));
     for (int k = 0; k < 4; ++k) ShellLayers<M>::start(p, layers<M>(p, s, k));
   }
 
-  static void lump(const ElementParameters& p, const Corners<double, 4>& c, const Given<double>& g, double (&mass)[4],
-                   double (&inertia)[4]) {
+  static void lump(const ElementParameters& p, const Corners<double, 4>& c, const Given<double>& g,
+                   double (&mass)[4], double (&inertia)[4]) {
     const double h = 0.25 * (g.thickness[0] + g.thickness[1] + g.thickness[2] + g.thickness[3]);
     const double area = 0.5 * norm(cross(c.x[2] - c.x[0], c.x[3] - c.x[1]));
     const double m = 0.25 * area * (double(p.density) * h + double(p.area_mass));
@@ -66,7 +68,8 @@ struct ShellFull {
   struct Place {
     L xi, eta;
     L x_xi, x_eta, y_xi, y_eta, D;
-    FABRICA_FN Place(const Modes<L>& x, const Modes<L>& y, double at_xi, double at_eta) : xi(at_xi), eta(at_eta) {
+    FABRICA_FN Place(const Modes<L>& x, const Modes<L>& y, double at_xi, double at_eta)
+        : xi(at_xi), eta(at_eta) {
       x_xi = fma(eta, x.h, x.xi), x_eta = fma(xi, x.h, x.eta);
       y_xi = fma(eta, y.h, y.xi), y_eta = fma(xi, y.h, y.eta);
       D = fma(x_xi, y_eta, -(x_eta * y_xi));
@@ -74,8 +77,12 @@ struct ShellFull {
     // D u,x and D u,y from u,xi and u,eta
     FABRICA_FN L dx(const L& a, const L& b) const { return fma(y_eta, a, -(y_xi * b)); }
     FABRICA_FN L dy(const L& a, const L& b) const { return fma(x_xi, b, -(x_eta * a)); }
-    FABRICA_FN L dx(const Modes<L>& u) const { return dx(fma(eta, u.h, u.xi), fma(xi, u.h, u.eta)); }
-    FABRICA_FN L dy(const Modes<L>& u) const { return dy(fma(eta, u.h, u.xi), fma(xi, u.h, u.eta)); }
+    FABRICA_FN L dx(const Modes<L>& u) const {
+      return dx(fma(eta, u.h, u.xi), fma(xi, u.h, u.eta));
+    }
+    FABRICA_FN L dy(const Modes<L>& u) const {
+      return dy(fma(eta, u.h, u.xi), fma(xi, u.h, u.eta));
+    }
     // adds the transpose of D (n1 u,x + n2 u,y)
     FABRICA_FN void transpose(const L& n1, const L& n2, Modes<L>& f) const {
       const L a = fma(y_eta, n1, -(x_eta * n2)), b = fma(x_xi, n2, -(y_xi * n1));
@@ -96,7 +103,8 @@ struct ShellFull {
     L x[4], y[4];
     Modes<L> mx, my;
     FABRICA_FN explicit Geometry(const Vec3<L> (&c)[4]) : axes(frame(c)) {
-      for (int a = 0; a < 4; ++a) x[a] = dot(axes.e1, c[a] - c[0]), y[a] = dot(axes.e2, c[a] - c[0]);
+      for (int a = 0; a < 4; ++a)
+        x[a] = dot(axes.e1, c[a] - c[0]), y[a] = dot(axes.e2, c[a] - c[0]);
       mx = Modes<L>(x[0], x[1], x[2], x[3]), my = Modes<L>(y[0], y[1], y[2], y[3]);
     }
   };
@@ -107,10 +115,13 @@ struct ShellFull {
     project_motion(c, dt, v, w);
     for (int a = 0; a < 4; ++a) v[a] = g.axes.local(v[a]), w[a] = g.axes.local(w[a]);
     Motion<L> u;
-    u.vx = Modes<L>(v[0].x, v[1].x, v[2].x, v[3].x), u.vy = Modes<L>(v[0].y, v[1].y, v[2].y, v[3].y);
-    u.wx = Modes<L>(w[0].x, w[1].x, w[2].x, w[3].x), u.wy = Modes<L>(w[0].y, w[1].y, w[2].y, w[3].y);
+    u.vx = Modes<L>(v[0].x, v[1].x, v[2].x, v[3].x),
+    u.vy = Modes<L>(v[0].y, v[1].y, v[2].y, v[3].y);
+    u.wx = Modes<L>(w[0].x, w[1].x, w[2].x, w[3].x),
+    u.wy = Modes<L>(w[0].y, w[1].y, w[2].y, w[3].y);
     auto side = [&](int i, int j) {
-      const L turn = fma(g.x[j] - g.x[i], w[i].y + w[j].y, -((g.y[j] - g.y[i]) * (w[i].x + w[j].x)));
+      const L turn =
+          fma(g.x[j] - g.x[i], w[i].y + w[j].y, -((g.y[j] - g.y[i]) * (w[i].x + w[j].x)));
       return fma(L(0.25), turn, L(0.5) * (v[j].z - v[i].z));
     };
     u.g12 = side(0, 1), u.g43 = side(3, 2), u.g14 = side(0, 3), u.g23 = side(1, 2);
@@ -125,8 +136,8 @@ struct ShellFull {
   };
 
   template <class L>
-  FABRICA_FN static void point_strain(const Place<L>& at, const Motion<L>& u, const L& shear, const L& dt,
-                                      ShellStrain<L>& e) {
+  FABRICA_FN static void point_strain(const Place<L>& at, const Motion<L>& u, const L& shear,
+                                      const L& dt, ShellStrain<L>& e) {
     const L one = L(1.0), half = L(0.5), scale = dt / at.D, half_scale = half * scale;
     e.xx = scale * at.dx(u.vx), e.yy = scale * at.dy(u.vy), e.xy = shear;
     const L g_xi = half * fma(one - at.eta, u.g12, (one + at.eta) * u.g43);
@@ -137,19 +148,22 @@ struct ShellFull {
   }
 
   template <class L>
-  FABRICA_FN static void point_forces(const Place<L>& at, const ShellResultants<L>& r, Conjugate<L>& f) {
+  FABRICA_FN static void point_forces(const Place<L>& at, const ShellResultants<L>& r,
+                                      Conjugate<L>& f) {
     const L zero = L(0.0), half = L(0.5), one = L(1.0);
     at.transpose(r.nxx, zero, f.fx), at.transpose(zero, r.nyy, f.fy);
     f.nxy = fma(at.D, r.nxy, f.nxy);
     at.transpose(-r.mxy, -r.myy, f.mx), at.transpose(r.mxx, r.mxy, f.my);
-    const L a = half * fma(at.y_eta, r.qx, -(at.x_eta * r.qy)), b = half * fma(at.x_xi, r.qy, -(at.y_xi * r.qx));
+    const L a = half * fma(at.y_eta, r.qx, -(at.x_eta * r.qy)),
+            b = half * fma(at.x_xi, r.qy, -(at.y_xi * r.qx));
     f.g12 += (one - at.eta) * a, f.g43 += (one + at.eta) * a;
     f.g14 += (one - at.xi) * b, f.g23 += (one + at.xi) * b;
   }
 
   template <class L, class M>
-  FABRICA_FN static void forces(const M& material, const ElementParameters& p, Real dt_previous, const Corners<L, 4>& c,
-                                StateView<L> s, CornerForces<L, 4>& out, Totals<L>& totals) {
+  FABRICA_FN static void forces(const M& material, const ElementParameters& p, Real dt_previous,
+                                const Corners<L, 4>& c, StateView<L> s, CornerForces<L, 4>& out,
+                                Totals<L>& totals) {
     const L dt = L(dt_previous);
     const Geometry<L> g(c.x);
     const Motion<L> u = motion(g, c, dt);
@@ -157,7 +171,7 @@ struct ShellFull {
     const L area = L(4.0) * centre.D;
     const L shear = L(0.5) * dt / centre.D * (centre.dy(u.vx) + centre.dx(u.vy));
     L h = s.load(thickness_field);
-    const Point<L> point{dt,          L(1.0), sqrt(area), L(p.bulk + Real(4.0 / 3.0) * p.shear),
+    const Point<L> point{dt,         L(1.0), sqrt(area), L(p.bulk + Real(4.0 / 3.0) * p.shear),
                          L(p.shear), L(1.0)};
     Conjugate<L> f;
     const L initial_step = quad_step(p, c.x, area, L(1.0));
@@ -182,7 +196,8 @@ struct ShellFull {
     s.store(thickness_field, h);
     totals.time_step = initial_step / sqrt(stiffening);
     totals.volume = area * h;
-    // the centre's shear strain takes the sum of the points: transpose of (D vx,y + D vy,x)/D at the centre
+    // the centre's shear strain takes the sum of the points: transpose of (D vx,y + D vy,x)/D at
+    // the centre
     const L nxy = f.nxy / centre.D;
     centre.transpose(L(0.0), nxy, f.fx), centre.transpose(nxy, L(0.0), f.fy);
     corner_forces(g, f, out);
@@ -190,8 +205,10 @@ struct ShellFull {
   }
 
   template <class L>
-  FABRICA_FN static void corner_forces(const Geometry<L>& g, const Conjugate<L>& f, CornerForces<L, 4>& out) {
-    constexpr double sign_xi[4] = {-1, 1, 1, -1}, sign_eta[4] = {-1, -1, 1, 1}, sign_h[4] = {1, -1, 1, -1};
+  FABRICA_FN static void corner_forces(const Geometry<L>& g, const Conjugate<L>& f,
+                                       CornerForces<L, 4>& out) {
+    constexpr double sign_xi[4] = {-1, 1, 1, -1}, sign_eta[4] = {-1, -1, 1, 1},
+                     sign_h[4] = {1, -1, 1, -1};
     Vec3<L> F[4], W[4];
     for (int a = 0; a < 4; ++a) {
       auto corner = [&](const Modes<L>& m) {
@@ -219,13 +236,15 @@ struct ShellFull {
   template <class M>
   static Sym3<Real> stress(const ElementParameters& p, StateView<Real> s, int layer) {
     Sym3<Real> sum{};
-    for (int k = 0; k < 4; ++k) sum += Real(0.25) * ShellLayers<M>::stress(layers<M>(p, s, k), layer);
+    for (int k = 0; k < 4; ++k)
+      sum += Real(0.25) * ShellLayers<M>::stress(layers<M>(p, s, k), layer);
     return sum;
   }
   template <class M>
   static Real plastic_strain(const ElementParameters& p, StateView<Real> s, int layer) {
     Real sum = 0;
-    for (int k = 0; k < 4; ++k) sum += Real(0.25) * ShellLayers<M>::plastic_strain(layers<M>(p, s, k), layer);
+    for (int k = 0; k < 4; ++k)
+      sum += Real(0.25) * ShellLayers<M>::plastic_strain(layers<M>(p, s, k), layer);
     return sum;
   }
   template <class M>

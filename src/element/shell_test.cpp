@@ -1,8 +1,5 @@
-// Tests that every shell has to pass: patch states, rigid rotation, virtual power, plates, stability, lane widths.
-#include "element/shell_bt.h"
-#include "element/shell_full.h"
-#include "element/shell_triangle.h"
-
+// Tests that every shell has to pass: patch states, rigid rotation, virtual power, plates,
+// stability, lane widths.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -12,6 +9,9 @@
 #include "base/lane_math.h"
 #include "base/pack.h"
 #include "element/element_driver.h"
+#include "element/shell_bt.h"
+#include "element/shell_full.h"
+#include "element/shell_triangle.h"
 #include "material/elastic.h"
 #include "material/plastic_kinematic.h"
 
@@ -74,9 +74,11 @@ void plate(Mesh<E, ElasticLaw>& m, int n, double a) {
       for (int i = 0; i < n; ++i) {
         const int k = j * (n + 1) + i;
         if ((i + j) % 2) {
-          m.elements.push_back({k, k + 1, k + n + 2}), m.elements.push_back({k, k + n + 2, k + n + 1});
+          m.elements.push_back({k, k + 1, k + n + 2}),
+              m.elements.push_back({k, k + n + 2, k + n + 1});
         } else {
-          m.elements.push_back({k, k + 1, k + n + 1}), m.elements.push_back({k + 1, k + n + 2, k + n + 1});
+          m.elements.push_back({k, k + 1, k + n + 1}),
+              m.elements.push_back({k + 1, k + n + 2, k + n + 1});
         }
       }
   }
@@ -87,16 +89,17 @@ template <class E>
 void support(Mesh<E, ElasticLaw>& m, double a) {
   for (std::size_t k = 0; k < m.x.size(); ++k) {
     const bool along_y = m.x[k].x == 0 || m.x[k].x == a, along_x = m.x[k].y == 0 || m.x[k].y == a;
-    m.fixed[k] = 0b100011 | (along_x || along_y ? 0b100 : 0) | (along_y ? 0b001000 : 0) | (along_x ? 0b010000 : 0);
+    m.fixed[k] = 0b100011 | (along_x || along_y ? 0b100 : 0) | (along_y ? 0b001000 : 0) |
+                 (along_x ? 0b010000 : 0);
   }
 }
 
 }  // namespace
 
-// Patch: v = G x with constant curvature rate k; sigma = plane stress modulus times (G + z k) dt. The Almansi
-// strain differs from G dt by dt^2 G^T G / 2, here 2e-7 of it.
-TEST_CASE_TEMPLATE("shells: constant strain and curvature give exact stress", E, ShellBT, ShellBTInvariant, ShellFull,
-                   ShellTriangle) {
+// Patch: v = G x with constant curvature rate k; sigma = plane stress modulus times (G + z k) dt.
+// The Almansi strain differs from G dt by dt^2 G^T G / 2, here 2e-7 of it.
+TEST_CASE_TEMPLATE("shells: constant strain and curvature give exact stress", E, ShellBT,
+                   ShellBTInvariant, ShellFull, ShellTriangle) {
   auto m = one<E>();
   m.start(0.1);
   const double kx = 2e-3, ky = -1e-3, kxy = 0.7e-3, ex = 1e-4, ey = 3e-4, exy = -2e-4;
@@ -119,9 +122,10 @@ TEST_CASE_TEMPLATE("shells: constant strain and curvature give exact stress", E,
   }
 }
 
-// Rigid rotation: v of the half step carries x exactly from one rotated place to the next; no stress may remain.
-TEST_CASE_TEMPLATE("shells: a finite rigid rotation leaves no stress", E, ShellBT, ShellBTInvariant, ShellFull,
-                   ShellTriangle) {
+// Rigid rotation: v of the half step carries x exactly from one rotated place to the next; no
+// stress may remain.
+TEST_CASE_TEMPLATE("shells: a finite rigid rotation leaves no stress", E, ShellBT, ShellBTInvariant,
+                   ShellFull, ShellTriangle) {
   for (const int formulation : {2, 10}) {
     auto m = one<E>(formulation == 10 ? 0.05 : 0.0);
     m.p.formulation = formulation;
@@ -145,12 +149,16 @@ TEST_CASE_TEMPLATE("shells: a finite rigid rotation leaves no stress", E, ShellB
     double plane = 0, across = 0;
     for (int q = 0; q < 3; ++q) {
       const Sym3<Real> s = E::template stress<ElasticLaw>(m.p, m.view(0), q);
-      plane = std::max({plane, std::abs(double(s.xx)), std::abs(double(s.yy)), std::abs(double(s.xy))});
+      plane =
+          std::max({plane, std::abs(double(s.xx)), std::abs(double(s.yy)), std::abs(double(s.xy))});
       across = std::max({across, std::abs(double(s.yz)), std::abs(double(s.zx))});
     }
-    // in the plane exact; the turn of the normal is exact to third order, theta_step^2 Theta / 12 = 1.3e-6
-    MESSAGE("formulation ", formulation, ": stress / E after one turn ", plane / 210, " ", across / 210);
-    // (corner normals of a warped element are tilted, so that drilling brings the third order into the plane)
+    // in the plane exact; the turn of the normal is exact to third order, theta_step^2 Theta / 12 =
+    // 1.3e-6
+    MESSAGE("formulation ", formulation, ": stress / E after one turn ", plane / 210, " ",
+            across / 210);
+    // (corner normals of a warped element are tilted, so that drilling brings the third order into
+    // the plane)
     const bool tilted = formulation == 10 && E::corners == 4;
     CHECK(plane / 210 < (mixed ? 3e-6 : tilted ? 1.3e-6 : 1e-12));
     CHECK(across / 210 < (mixed ? 3e-6 : 1.3e-6));
@@ -158,10 +166,10 @@ TEST_CASE_TEMPLATE("shells: a finite rigid rotation leaves no stress", E, ShellB
   }
 }
 
-// Virtual power: with the stress held, f.v + m.w = -(power of stress and hourglass forces) for any corner motion;
-// forces add up to zero, and with the projection so do the moments.
-TEST_CASE_TEMPLATE("shells: corner forces are the transpose of the strain rates", E, ShellBT, ShellBTInvariant,
-                   ShellFull, ShellTriangle) {
+// Virtual power: with the stress held, f.v + m.w = -(power of stress and hourglass forces) for any
+// corner motion; forces add up to zero, and with the projection so do the moments.
+TEST_CASE_TEMPLATE("shells: corner forces are the transpose of the strain rates", E, ShellBT,
+                   ShellBTInvariant, ShellFull, ShellTriangle) {
   for (const int formulation : {2, 10}) {
     auto m = one<E>(0.04);
     m.p.formulation = formulation;
@@ -184,7 +192,8 @@ TEST_CASE_TEMPLATE("shells: corner forces are the transpose of the strain rates"
       m.internal = m.hourglass = 0;
       m.forces();
       double power = 0;
-      for (std::size_t a = 0; a < m.x.size(); ++a) power += dot(m.force[a], m.v[a]) + dot(m.moment[a], m.w[a]);
+      for (std::size_t a = 0; a < m.x.size(); ++a)
+        power += dot(m.force[a], m.v[a]) + dot(m.moment[a], m.w[a]);
       // the energy uses the mean stress of the step: relative difference of order 1e-8 / 1e-3
       double scale = 0;
       for (std::size_t a = 0; a < m.x.size(); ++a) scale += norm(m.force[a]);
@@ -204,9 +213,10 @@ TEST_CASE_TEMPLATE("shells: corner forces are the transpose of the strain rates"
   }
 }
 
-// Simply supported square plate: first frequency w = 2 pi^2/a^2 sqrt(D / (rho h)) (V30), and the sum of energies
-// of the undamped vibration stays.
-TEST_CASE_TEMPLATE("shells: first frequency of a simply supported plate", E, ShellBT, ShellFull, ShellTriangle) {
+// Simply supported square plate: first frequency w = 2 pi^2/a^2 sqrt(D / (rho h)) (V30), and the
+// sum of energies of the undamped vibration stays.
+TEST_CASE_TEMPLATE("shells: first frequency of a simply supported plate", E, ShellBT, ShellFull,
+                   ShellTriangle) {
   Mesh<E, ElasticLaw> m;
   prepare(m, 2);
   const double a = 100, h = 1;
@@ -233,14 +243,16 @@ TEST_CASE_TEMPLATE("shells: first frequency of a simply supported plate", E, She
   }
   REQUIRE(zeros.size() == 2);
   const double found = pi / (zeros[1] - zeros[0]);
-  MESSAGE("frequency / exact = ", found / exact, ", energy / start = ",
-          (m.kinetic() + m.internal + m.hourglass) / start);
+  MESSAGE("frequency / exact = ", found / exact,
+          ", energy / start = ", (m.kinetic() + m.internal + m.hourglass) / start);
   CHECK(std::abs(found / exact - 1) < 0.01);
   CHECK(std::abs((m.kinetic() + m.internal + m.hourglass) / start - 1) < 1e-3);
 }
 
-// Simply supported square plate under uniform pressure, a/h = 100: w = 0.00406 p a^4 / D (V29), at rest.
-TEST_CASE_TEMPLATE("shells: deflection of a simply supported plate", E, ShellBT, ShellFull, ShellTriangle) {
+// Simply supported square plate under uniform pressure, a/h = 100: w = 0.00406 p a^4 / D (V29), at
+// rest.
+TEST_CASE_TEMPLATE("shells: deflection of a simply supported plate", E, ShellBT, ShellFull,
+                   ShellTriangle) {
   Mesh<E, ElasticLaw> m;
   prepare(m, 2);
   const double a = 100, h = 1, pressure = 1e-7;
@@ -254,7 +266,8 @@ TEST_CASE_TEMPLATE("shells: deflection of a simply supported plate", E, ShellBT,
   const double until = 12 / first;
   while (m.time < until)
     m.cycle([&](auto& mesh) {
-      for (std::size_t k = 0; k < mesh.x.size(); ++k) mesh.force[k].z += pressure / (h * 7.85e-6) * mesh.mass[k];
+      for (std::size_t k = 0; k < mesh.x.size(); ++k)
+        mesh.force[k].z += pressure / (h * 7.85e-6) * mesh.mass[k];
     });
   const double exact = 0.00406235 * pressure * std::pow(a, 4) / D;
   MESSAGE("deflection / exact = ", m.x[centre].z / exact);
@@ -262,8 +275,9 @@ TEST_CASE_TEMPLATE("shells: deflection of a simply supported plate", E, ShellBT,
   CHECK(std::abs(m.x[centre].z / exact - 1) < (E::corners == 3 ? 0.02 : 0.01));
 }
 
-// Twisted beam of MacNeal and Harder, 90 degrees over the length, 4 x 24 elements: displacement of the tip in the
-// direction of the load, 5.424e-3 in the plane of the tip's width, 1.754e-3 across (V35). Static: damped motion.
+// Twisted beam of MacNeal and Harder, 90 degrees over the length, 4 x 24 elements: displacement of
+// the tip in the direction of the load, 5.424e-3 in the plane of the tip's width, 1.754e-3 across
+// (V35). Static: damped motion.
 TEST_CASE_TEMPLATE("shells: twisted beam", E, ShellBT, ShellFull) {
   for (const bool in_plane : {true, false}) {
     Mesh<E, ElasticLaw> m;
@@ -304,9 +318,9 @@ TEST_CASE_TEMPLATE("shells: twisted beam", E, ShellBT, ShellFull) {
   }
 }
 
-// Fully plastic moment of a plate (V37), five Gauss points, curvature 20 times that of yield. Bent to a cylinder
-// (kyy = 0) the plate carries M = 2/sqrt(3) sy h^2/4 per width. Once every point yields, the Gauss sum is
-// sum w |zeta| / (1/2) = 0.9449 of that, whatever the element does.
+// Fully plastic moment of a plate (V37), five Gauss points, curvature 20 times that of yield. Bent
+// to a cylinder (kyy = 0) the plate carries M = 2/sqrt(3) sy h^2/4 per width. Once every point
+// yields, the Gauss sum is sum w |zeta| / (1/2) = 0.9449 of that, whatever the element does.
 TEST_CASE_TEMPLATE("shells: plastic moment", E, ShellBT, ShellFull, ShellTriangle) {
   Mesh<E, PlasticKinematic> m;
   const Elastic e = Elastic::from_youngs(7.85e-6, 210, 0.0);
@@ -340,7 +354,8 @@ TEST_CASE_TEMPLATE("shells: plastic moment", E, ShellBT, ShellFull, ShellTriangl
   E::template resultants<PlasticKinematic>(m.p, m.view(0), r);
   const double exact = 2 / std::sqrt(3.0) * 0.3 * h * h / 4;
   double quadrature = 0;
-  for (int q = 0; q < 5; ++q) quadrature += 2 * m.p.layer_weight[q] * std::abs(double(m.p.layer_z[q]));
+  for (int q = 0; q < 5; ++q)
+    quadrature += 2 * m.p.layer_weight[q] * std::abs(double(m.p.layer_z[q]));
   MESSAGE("moment / exact = ", r[0] / exact, ", of the Gauss sum ", r[0] / exact / quadrature);
   CHECK(std::abs(r[0] / exact / quadrature - 1) < 0.002);
 }
@@ -356,7 +371,8 @@ TEST_CASE_TEMPLATE("shells: the estimated step is stable", E, ShellBT, ShellFull
     for (Vec3d& x : m.x) x += Vec3d{0.15 * u(random), 0.15 * u(random), 0.02 * u(random)};
     m.start(h);
     for (std::size_t k = 0; k < m.x.size(); ++k)
-      m.v[k] = {1e-4 * u(random), 1e-4 * u(random), 1e-4 * u(random)}, m.w[k] = {1e-4 * u(random), 1e-4 * u(random), 0};
+      m.v[k] = {1e-4 * u(random), 1e-4 * u(random), 1e-4 * u(random)},
+      m.w[k] = {1e-4 * u(random), 1e-4 * u(random), 0};
     // largest kinetic energy of the first and of the last five hundred steps
     double first = 0, last = 0;
     for (int k = 0; k < 5000; ++k) {
@@ -370,8 +386,8 @@ TEST_CASE_TEMPLATE("shells: the estimated step is stable", E, ShellBT, ShellFull
 }
 
 // The bits do not depend on the lane width.
-TEST_CASE_TEMPLATE("shells: a pack gives the bits of the scalar lanes", E, ShellBT, ShellBTInvariant, ShellFull,
-                   ShellTriangle) {
+TEST_CASE_TEMPLATE("shells: a pack gives the bits of the scalar lanes", E, ShellBT,
+                   ShellBTInvariant, ShellFull, ShellTriangle) {
   constexpr int W = native_width < block_size ? native_width : block_size, N = E::corners;
   using P = Pack<Real, W>;
   std::mt19937 random(3);
@@ -388,13 +404,15 @@ TEST_CASE_TEMPLATE("shells: a pack gives the bits of the scalar lanes", E, Shell
       for (int d = 0; d < 3; ++d) {
         s[i].x[a][d] = Real((d < 2 ? x0[a][d] : 0) + 0.1 * u(random));
         s[i].v[a][d] = Real(u(random)), s[i].w[a][d] = Real(u(random));
-        set(c.x[a][d], i, s[i].x[a][d]), set(c.v[a][d], i, s[i].v[a][d]), set(c.w[a][d], i, s[i].w[a][d]);
+        set(c.x[a][d], i, s[i].x[a][d]), set(c.v[a][d], i, s[i].v[a][d]),
+            set(c.w[a][d], i, s[i].w[a][d]);
       }
   Given<P> gp{};
   Given<Real> gs{};
   for (int a = 0; a < 4; ++a) gp.thickness[a] = P(0.1), gs.thickness[a] = Real(0.1);
   E::template initialise<P, ElasticLaw>(m.law, m.p, c, gp, {wide.data()});
-  for (int i = 0; i < W; ++i) E::template initialise<Real, ElasticLaw>(m.law, m.p, s[i], gs, {narrow.data() + i});
+  for (int i = 0; i < W; ++i)
+    E::template initialise<Real, ElasticLaw>(m.law, m.p, s[i], gs, {narrow.data() + i});
   for (int k = 0; k < 3; ++k) {
     CornerForces<P, N> fp;
     Totals<P> tp;
@@ -406,7 +424,8 @@ TEST_CASE_TEMPLATE("shells: a pack gives the bits of the scalar lanes", E, Shell
       bool same = t.time_step == get(tp.time_step, i) && t.internal == get(tp.internal, i) &&
                   t.damping == get(tp.damping, i) && t.hourglass == get(tp.hourglass, i);
       for (int a = 0; a < N; ++a)
-        for (int d = 0; d < 3; ++d) same = same && f.f[a][d] == get(fp.f[a][d], i) && f.m[a][d] == get(fp.m[a][d], i);
+        for (int d = 0; d < 3; ++d)
+          same = same && f.f[a][d] == get(fp.f[a][d], i) && f.m[a][d] == get(fp.m[a][d], i);
       CHECK(same);
     }
   }

@@ -1,13 +1,16 @@
 #pragma once
-// Shear-flexible triangle (ELFORM 3, 4, 17 and quadrilaterals with a doubled corner): constant membrane strain,
-// constant curvature, transverse shear tied on the sides (MITC3), all at the centroid.
-//   B1 = (y23, y31, y12)/2A,  B2 = (x32, x13, x21)/2A                                                       (1)
+// Shear-flexible triangle (ELFORM 3, 4, 17 and quadrilaterals with a doubled corner): constant
+// membrane strain, constant curvature, transverse shear tied on the sides (MITC3), all at the
+// centroid.
+//   B1 = (y23, y31, y12)/2A,  B2 = (x32, x13, x21)/2A                                           (1)
 //   er(1) = vz21 + x21 (wy1+wy2)/2 - y21 (wx1+wx2)/2 on side 1-2, es(2) likewise on side 1-3,
-//   c = es(2) - er(1) - es(3) + er(3) with (3) on side 2-3;  er = er(1) + c/3,  es = es(2) - c/3            (2)
-//   2dxz = (y31 er - y21 es)/2A,  2dyz = (x21 es - x31 er)/2A                                              (3)
-// (2) in differences: er = vz21 + x21 mean wy - y21 mean wx + a, es = vz31 + x31 mean wy - y31 mean wx + b,
+//   c = es(2) - er(1) - es(3) + er(3) with (3) on side 2-3;  er = er(1) + c/3,  es = es(2) - c/3
+//     (2)
+//   2dxz = (y31 er - y21 es)/2A,  2dyz = (x21 es - x31 er)/2A                                   (3)
+// (2) in differences: er = vz21 + x21 mean wy - y21 mean wx + a, es = vz31 + x31 mean wy - y31 mean
+// wx + b,
 //   6a = (x21 - x31) wy21 - x21 wy31 - [(y21 - y31) wx21 - y21 wx31]
-//   6b = (x31 - x21) wy31 - x31 wy21 - [(y31 - y21) wx31 - y31 wx21]                                       (4)
+//   6b = (x31 - x21) wy31 - x31 wy21 - [(y31 - y21) wx31 - y31 wx21]                            (4)
 // Source: Lee and Bathe, Computers and Structures 82 (2004) 945.
 #include "element/shell.h"
 
@@ -32,14 +35,14 @@ struct ShellTriangle {
   }
 
   template <class L, class M>
-  FABRICA_FN static void initialise(const M&, const ElementParameters& p, const Corners<L, 3>&, const Given<L>& g,
-                                    StateView<L> s) {
+  FABRICA_FN static void initialise(const M&, const ElementParameters& p, const Corners<L, 3>&,
+                                    const Given<L>& g, StateView<L> s) {
     s.store(thickness_field, L(1.0 / 3.0) * (g.thickness[0] + g.thickness[1] + g.thickness[2]));
     ShellLayers<M>::start(p, layers<L>(s));
   }
 
-  static void lump(const ElementParameters& p, const Corners<double, 3>& c, const Given<double>& g, double (&mass)[3],
-                   double (&inertia)[3]) {
+  static void lump(const ElementParameters& p, const Corners<double, 3>& c, const Given<double>& g,
+                   double (&mass)[3], double (&inertia)[3]) {
     const double h = (g.thickness[0] + g.thickness[1] + g.thickness[2]) / 3;
     const double area = 0.5 * norm(cross(c.x[1] - c.x[0], c.x[2] - c.x[0]));
     const double m = area * (double(p.density) * h + double(p.area_mass)) / 3;
@@ -50,15 +53,16 @@ struct ShellTriangle {
   }
 
   template <class L, class M>
-  FABRICA_FN static void forces(const M& material, const ElementParameters& p, Real dt_previous, const Corners<L, 3>& c,
-                                StateView<L> s, CornerForces<L, 3>& out, Totals<L>& totals) {
+  FABRICA_FN static void forces(const M& material, const ElementParameters& p, Real dt_previous,
+                                const Corners<L, 3>& c, StateView<L> s, CornerForces<L, 3>& out,
+                                Totals<L>& totals) {
     const L dt = L(dt_previous);
     const Geometry<L> g(c.x);
     ShellStrain<L> e;
     strain(g, c, dt, e);
 
     L h = s.load(thickness_field);
-    const Point<L> point{dt,          L(1.0), sqrt(g.area), L(p.bulk + Real(4.0 / 3.0) * p.shear),
+    const Point<L> point{dt,         L(1.0), sqrt(g.area), L(p.bulk + Real(4.0 / 3.0) * p.shear),
                          L(p.shear), L(1.0)};
     ShellResultants<L> r = ShellLayers<M>::advance(material, p, e, h, point, layers<L>(s));
     if (p.thickness_update) h *= L(1.0) + r.thinning;
@@ -70,7 +74,8 @@ struct ShellTriangle {
     totals.alive = r.alive;
     const L mid_area = g.area * (L(1.0) - L(0.5) * (e.xx + e.yy));
     totals.internal = mid_area * r.work;
-    if (p.stiffness_damping != 0) totals.damping = mid_area * r.alive * damp_shell(p, e, h, dt, step, r);
+    if (p.stiffness_damping != 0)
+      totals.damping = mid_area * r.alive * damp_shell(p, e, h, dt, step, r);
     corner_forces(g, r, out);
   }
 
@@ -89,7 +94,9 @@ struct ShellTriangle {
       inverse = L(1.0) / twice;
     }
     FABRICA_FN L dx(const L& u21, const L&) const { return inverse * (y31 * u21); }
-    FABRICA_FN L dy(const L& u21, const L& u31) const { return inverse * fma(x21, u31, -(x31 * u21)); }
+    FABRICA_FN L dy(const L& u21, const L& u31) const {
+      return inverse * fma(x21, u31, -(x31 * u21));
+    }
     // smallest altitude
     FABRICA_FN L altitude(const Vec3<L> (&x)[3]) const {
       const Vec3<L> a = x[1] - x[0], b = x[2] - x[0], d = x[2] - x[1];
@@ -98,7 +105,8 @@ struct ShellTriangle {
   };
 
   template <class L>
-  FABRICA_FN static void strain(const Geometry<L>& g, const Corners<L, 3>& c, const L& dt, ShellStrain<L>& e) {
+  FABRICA_FN static void strain(const Geometry<L>& g, const Corners<L, 3>& c, const L& dt,
+                                ShellStrain<L>& e) {
     const Vec3<L> v21 = g.axes.local(c.v[1] - c.v[0]), v31 = g.axes.local(c.v[2] - c.v[0]);
     const Vec3<L> w21 = g.axes.local(c.w[1] - c.w[0]), w31 = g.axes.local(c.w[2] - c.w[0]);
     const Vec3<L> mean = g.axes.local(L(1.0 / 3.0) * (c.w[0] + c.w[1] + c.w[2]));
@@ -118,8 +126,10 @@ struct ShellTriangle {
   }
 
   template <class L>
-  FABRICA_FN static void corner_forces(const Geometry<L>& g, const ShellResultants<L>& r, CornerForces<L, 3>& out) {
-    // forces that oppose u21 and u31 of a component with resultants n1 (d/dx) and n2 (d/dy): A B . n
+  FABRICA_FN static void corner_forces(const Geometry<L>& g, const ShellResultants<L>& r,
+                                       CornerForces<L, 3>& out) {
+    // forces that oppose u21 and u31 of a component with resultants n1 (d/dx) and n2 (d/dy): A B .
+    // n
     auto pair = [&](const L& n1, const L& n2, L& f2, L& f3) {
       f2 = L(0.5) * fma(g.y31, n1, -(g.x31 * n2));
       f3 = L(0.5) * (g.x21 * n2);

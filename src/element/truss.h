@@ -1,6 +1,6 @@
 #pragma once
 // Truss (beam ELFORM 3): two corners, constant area, axial stress only.
-//   de = dt v21.xm / (xm.xm),  xm: x21 at mid step, so that a rigid rotation strains nothing                 (1)
+//   de = dt v21.xm / (xm.xm),  xm: x21 at mid step, so that a rigid rotation strains nothing    (1)
 //   force = s A along x21, stable step = L/c, c = sqrt(E/rho)
 #include "element/kernel.h"
 #include "material/uniaxial.h"
@@ -21,18 +21,19 @@ struct Truss {
   }
 
   template <class L, class M>
-  FABRICA_FN static void initialise(const M&, const ElementParameters&, const Corners<L, 2>&, const Given<L>&,
-                                    StateView<L> s) {
+  FABRICA_FN static void initialise(const M&, const ElementParameters&, const Corners<L, 2>&,
+                                    const Given<L>&, StateView<L> s) {
     if constexpr (M::can_fail) s.store(alive_field<M>, L(1.0));
   }
-  static void lump(const ElementParameters& p, const Corners<double, 2>& c, const Given<double>&, double (&mass)[2],
-                   double (&)[2]) {
+  static void lump(const ElementParameters& p, const Corners<double, 2>& c, const Given<double>&,
+                   double (&mass)[2], double (&)[2]) {
     mass[0] = mass[1] = 0.5 * double(p.density) * double(p.area) * norm(c.x[1] - c.x[0]);
   }
 
   template <class L, class M>
-  FABRICA_FN static void forces(const M& material, const ElementParameters& p, Real dt_previous, const Corners<L, 2>& c,
-                                StateView<L> s, CornerForces<L, 2>& out, Totals<L>& totals) {
+  FABRICA_FN static void forces(const M& material, const ElementParameters& p, Real dt_previous,
+                                const Corners<L, 2>& c, StateView<L> s, CornerForces<L, 2>& out,
+                                Totals<L>& totals) {
     using MaterialState = typename M::template State<L>;
     const L dt = L(dt_previous), zero = L(0.0);
     const Vec3<L> x21 = c.x[1] - c.x[0], v21 = c.v[1] - c.v[0];
@@ -54,10 +55,12 @@ struct Truss {
     const L area = L(p.area);
     totals.volume = area * length;
     totals.internal = totals.volume * (L(0.5) * strain * (old.xx + now.xx));
-    totals.time_step = length / (L(sqrt(p.youngs / p.density)) * sqrt(max(point.modulus / modulus, L(1.0))));
+    totals.time_step =
+        length / (L(sqrt(p.youngs / p.density)) * sqrt(max(point.modulus / modulus, L(1.0))));
     L stress = now.xx;
     if (p.stiffness_damping != 0) {
-      const L beta = p.stiffness_damping > 0 ? L(p.stiffness_damping) * totals.time_step : L(-p.stiffness_damping);
+      const L beta = p.stiffness_damping > 0 ? L(p.stiffness_damping) * totals.time_step
+                                             : L(-p.stiffness_damping);
       const L viscous = totals.alive * beta * L(p.youngs) * strain / max(dt, L(1e-30));
       stress += viscous;
       totals.damping = totals.volume * viscous * strain;

@@ -1,0 +1,145 @@
+// Tests of the options of shells: thickness update, reference surface, failure, hourglass forms,
+// stable step.
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+
+#include "element/element_driver.h"
+#include "element/shell_bt.h"
+#include "element/shell_full.h"
+#include "element/shell_triangle.h"
+#include "material/elastic.h"
+#include "material/plastic_kinematic.h"
+
+using namespace fabrica;
+using namespace fabrica::test;
+
+namespace {
+
+template <class E, class M = ElasticLaw>
+Mesh<E, M> rectangle(double a, double b) {
+  Mesh<E, M> m;
+  const Elastic e = Elastic::from_youngs(7.85e-6, 210, 0.3);
+  if constexpr (std::is_same_v<M, ElasticLaw>) {
+    m.law = {Real(e.density), Real(e.bulk), Real(e.shear)};
+  } else {
+    m.law = M{};
+    m.law.density = Real(e.density), m.law.moduli = {Real(e.bulk), Real(e.shear), Real(0)};
+    m.law.yield_stress = Real(0.3), m.law.failure_strain = Real(0.02);
+  }
+  m.moduli();
+  gauss_layers(m.p, 3);
+  m.p.shear_factor = Real(5.0 / 6.0), m.p.hourglass = 4, m.p.hourglass_coefficient = Real(0.05);
+  m.add({0, 0, 0}), m.add({a, 0, 0});
+  if constexpr (E::corners == 4) {
+    m.add({a, b, 0}), m.add({0, b, 0});
+    m.elements.push_back({0, 1, 2, 3});
+  } else {
+    m.add({0, b, 0});
+    m.elements.push_back({0, 1, 2});
+  }
+  return m;
+}
+template <class M>
+void stretch(M& m, double exx, double eyy) {
+  for (std::size_t a = 0; a < m.x.size(); ++a) m.v[a] = {exx * m.x[a].x, eyy * m.x[a].y, 0};
+}
+
+}  // namespace
+
+// ISTUPD = 1, elastic: dh/h = -nu/(1 - nu) (exx + eyy).
+TEST_CASE_TEMPLATE("shells: the thickness follows the plane stress strain", E, ShellBT, ShellFull,
+                   ShellTriangle) {
+  for (const int update : {0, 1}) {
+    auto m = rectangle<E>(1, 1);
+    m.p.thickness_update = update;
+    m.start(0.1);
+    stretch(m, 1e-3, 2e-3);
+    m.dt = 1;
+    m.forces();
+    const double exact = update ? -0.3 / 0.7 * 3e-3 : 0;
+    CHECK(std::abs(E::thickness(m.view(0)) / 0.1 - 1 - exact) <
+          6e-6);  // the Almansi strain is 0.15 % smaller
+  }
+}
+
+// NLOC = 1: the nodes lie on the upper surface, so that a membrane force n acts at z = -h/2: m = -n
+// h/2.
+TEST_CASE_TEMPLATE("shells: the reference surface shifts the layers", E, ShellBT, ShellFull,
+                   ShellTriangle) {
+  auto m = rectangle<E>(1, 1);
+  m.p.reference_location = 1;
+  m.start(0.1);
+  stretch(m, 1e-4, 0);
+  m.dt = 1;
+  m.forces();
+  double r[8];
+  E::template resultants<ElasticLaw>(m.p, m.view(0), r);
+  CHECK(r[5] > 0);
+  CHECK(std::abs(r[0] / (-0.05 * r[5]) - 1) < 1e-5);
+}
+
+// A law that fails: beyond its failure strain the element is dead and gives no force.
+TEST_CASE_TEMPLATE("shells: a failed element gives no force", E, ShellBT, ShellFull,
+                   ShellTriangle) {
+  auto m = rectangle<E, PlasticKinematic>(1, 1);
+  m.start(0.1);
+  m.dt = 1;
+  double before = 0;
+  for (int k = 0; k < 10; ++k) {
+    stretch(m, 1e-3, 0);
+    for (std::size_t a = 0; a < m.x.size(); ++a) m.x[a] += m.v[a];
+    m.forces();
+  }
+  for (const Vec3d& f : m.force) before = std::max(before, norm(f));
+  CHECK(before > 0.3 * 0.1 * 0.3);
+  for (int k = 0; k < 20; ++k) {
+    stretch(m, 1e-3, 0);
+    for (std::size_t a = 0; a < m.x.size(); ++a) m.x[a] += m.v[a];
+    m.forces();
+  }
+  CornerForces<Real, E::corners> out{};
+  Totals<Real> t{};
+  E::template forces<Real, PlasticKinematic>(m.law, m.p, Real(0), m.gather(0), m.view(0), out, t);
+  CHECK(t.alive == 0);
+  for (int a = 0; a < E::corners; ++a) CHECK(norm(out.f[a]) == 0);
+  CHECK(E::template plastic_strain<PlasticKinematic>(m.p, m.view(0), 1) > Real(0.0199));
+}
+
+// Hourglass motion: viscous forms take energy out at the rate f.v, the stiffness form gives it
+// back.
+TEST_CASE("shell: hourglass forms") {
+  for (const int form : {2, 4}) {
+    auto m = rectangle<ShellBT>(1, 1);
+    m.p.hourglass = form;
+    m.start(0.1);
+    m.dt = 1e-4;
+    const double sign[4] = {1, -1, 1, -1};
+    double most = 0;
+    for (int k = 0; k < 20; ++k) {
+      for (int a = 0; a < 4; ++a) m.v[a] = {(k < 10 ? 1e-3 : -1e-3) * sign[a], 0, 0};
+      m.forces();
+      double power = 0;
+      for (int a = 0; a < 4; ++a) power += dot(m.force[a], m.v[a]);
+      if (form == 2 || k < 10) CHECK(power < 0);
+      most = std::max(most, m.hourglass);
+    }
+    CHECK(most > 0);
+    if (form == 2) CHECK(m.hourglass == doctest::Approx(most));
+    if (form == 4) CHECK(std::abs(m.hourglass) < 1e-4 * most);
+    CHECK(std::abs(m.internal) < 1e-6 * most);
+  }
+}
+
+// Rectangle 2 x 1: A/longest side = 1, A/diagonal = 2/sqrt 5; ISDO = 2 uses the speed of a bar.
+TEST_CASE("shell: stable step by ISDO") {
+  const double bar = std::sqrt(210 / 7.85e-6), plate = bar / std::sqrt(1 - 0.09);
+  const double exact[3] = {1 / plate, 2 / std::sqrt(5.0) / plate, 1 / bar};
+  for (int option = 0; option < 3; ++option) {
+    auto m = rectangle<ShellBT>(2, 1);
+    m.p.time_step_option = option;
+    m.start(0.1);
+    CHECK(std::abs(m.step / exact[option] - 1) < 1e-6);
+  }
+}
