@@ -74,7 +74,8 @@ PointBoxPairs find_pairs(const std::vector<Vec3d>& points, const std::vector<Bou
   for (int b = 0; b < int(boxes.size()); ++b) {
     const BoundingBox& box = boxes[b];
     int i0[3], i1[3];
-    for (int d = 0; d < 3; ++d) i0[d] = grid.index(box.low[d], d), i1[d] = grid.index(box.high[d], d);
+    for (int d = 0; d < 3; ++d)
+      i0[d] = grid.index(box.low[d], d), i1[d] = grid.index(box.high[d], d);
     const double rows = double(i1[1] - i0[1] + 1) * double(i1[2] - i0[2] + 1);
     // a box over many rows is cheaper against all points
     if (rows * 8 > double(points.size())) {

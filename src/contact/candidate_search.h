@@ -1,7 +1,7 @@
 #pragma once
-// Every pair (point, box) with the point inside the box: cells of the size of a typical box, points sorted by cell
-// key (x fastest), each box scans the rows of cells it overlaps. Deterministic: the result is sorted by point, then
-// box, whatever the order of the search.
+// Every pair (point, box) with the point inside the box: cells of the size of a typical box, points
+// sorted by cell key (x fastest), each box scans the rows of cells it overlaps. Deterministic: the
+// result is sorted by point, then box, whatever the order of the search.
 #include <vector>
 
 #include "base/tensor.h"

@@ -1,7 +1,7 @@
 #pragma once
 // Closest point of a segment to a point x.
-//   bilinear quad X(r,s) = sum phi_i X_i, phi = (1 +- r)(1 +- s)/4:  (x - X).X,r = 0, (x - X).X,s = 0
-//   by Newton's method; where r or s leave [-1,1] the closest point lies on an edge or a corner.
+//   bilinear quad X(r,s) = sum phi_i X_i, phi = (1 +- r)(1 +- s)/4:  (x - X).X,r = 0, (x - X).X,s =
+//   0 by Newton's method; where r or s leave [-1,1] the closest point lies on an edge or a corner.
 //   triangle: closed form in barycentric coordinates.
 // The distance is continuous in x and in the corners (1-Lipschitz): forces do not jump at edges.
 #include <algorithm>
@@ -12,11 +12,11 @@
 namespace fabrica {
 
 struct SurfacePoint {
-  double phi[4];    // weights of the corners; sum 1
-  Vec3d x;          // closest point
-  Vec3d normal;     // unit normal of the segment there
+  double phi[4];  // weights of the corners; sum 1
+  Vec3d x;        // closest point
+  Vec3d normal;   // unit normal of the segment there
   double r, s;
-  int feature;      // 0 inside; 1-4 on edge i-1 -> i; 5-8 corner i-5
+  int feature;  // 0 inside; 1-4 on edge i-1 -> i; 5-8 corner i-5
 };
 
 namespace contact_detail {
@@ -95,7 +95,7 @@ inline SurfacePoint closest_point_quad(const Vec3d* X, const Vec3d& x, double r,
     const double largest = std::max(std::abs(dr), std::abs(ds));
     if (largest > 1) dr /= largest, ds /= largest;
     r = std::clamp(r + dr, -1.5, 1.5), s = std::clamp(s + ds, -1.5, 1.5);
-    if (largest < 1e-9) break;
+    if (largest < 1e-6) break;  // the error is its square
   }
   if (std::abs(r) <= 1 && std::abs(s) <= 1) {
     p.phi[0] = 0.25 * (1 - r) * (1 - s), p.phi[1] = 0.25 * (1 + r) * (1 - s);

@@ -63,8 +63,7 @@ TEST_CASE("distance is continuous across edges and corners") {
 }
 
 TEST_CASE("closest points of crossing and parallel edges") {
-  const EdgePoints cross =
-      closest_points_edges({-1, 0, 0.5}, {2, 0, 0}, {0.25, -1, 0}, {0, 4, 0});
+  const EdgePoints cross = closest_points_edges({-1, 0, 0.5}, {2, 0, 0}, {0.25, -1, 0}, {0, 4, 0});
   CHECK(cross.a == doctest::Approx(0.625));
   CHECK(cross.b == doctest::Approx(0.25));
   CHECK(norm(cross.gap) == doctest::Approx(0.5));

@@ -1,10 +1,11 @@
 #pragma once
 // Penalty, damping and friction of one contact point.
-//   stiffness, SOFT=0   solid face: k = f K A^2/V;  shell: k = f K A/longest diagonal  (f = SLSFAC SFS)
-//   stiffness, SOFT=1   k = max(k0, 0.5 SOFSCL m*/dt^2),  1/m* = 1/m_s + sum phi_i^2/m_i
+//   stiffness, SOFT=0   solid face: k = f K A^2/V;  shell: k = f K A/longest diagonal  (f = SLSFAC
+//   SFS) stiffness, SOFT=1   k = max(k0, 0.5 SOFSCL m*/dt^2),  1/m* = 1/m_s + sum phi_i^2/m_i
 //   normal force        f_n = max(0, k d + c d'),  c = 2 (VDC/100) sqrt(k m*)  while d > 0
 //   friction            F* = F_t - k u_t;  |F_t| <= mu f_n,  mu = FD + (FS - FD) exp(-DC |v_t|)
-// d: penetration; u_t: tangential displacement over the step. Source: LS-DYNA theory manual, contact.
+// d: penetration; u_t: tangential displacement over the step. Source: LS-DYNA theory manual,
+// contact.
 #include <algorithm>
 #include <cmath>
 

@@ -29,13 +29,16 @@ void check_options(const Model& model, const Contact& c, Diagnostics& diagnostic
   };
   if (c.soft == 2) warn("contact-soft-2", "soft", "SOFT=2 acts as SOFT=1, node to segment");
   if (c.kind == ContactKind::automatic_general)
-    warn("contact-general-edges", "", "beams and free edges do not touch each other, only surfaces do");
+    warn("contact-general-edges", "",
+         "beams and free edges do not touch each other, only surfaces do");
   if (c.ignore == 0 && model.controls.contact_ignore == 0 && !is_tied(c.kind))
     warn("contact-ignore-0", "ignore",
-         "nodes that penetrate at the start stay where they are; their penetration is not pushed back");
+         "nodes that penetrate at the start stay where they are; their penetration is not pushed "
+         "back");
   for (const ContactSide* s : {&c.a, &c.b})
     for (int p : s->parts)
-      if (model.parts[p].contact && (model.parts[p].contact->fs != 0 || model.parts[p].contact->fd != 0) && c.fs == -1)
+      if (model.parts[p].contact &&
+          (model.parts[p].contact->fs != 0 || model.parts[p].contact->fd != 0) && c.fs == -1)
         return warn("contact-part-friction", "fs", "friction by part (FS=-1) is not used");
 }
 
@@ -92,9 +95,10 @@ void Contacts::add_contact(const Model& model, int index, const SurfaceSource& s
   if (is_single(contact.kind)) return add(a, a, false);
   ContactSurface b = source.build(contact, contact.b, true);
   if (b.segments.empty())
-    diagnostics.warning("contact-no-segments", contact.where, "CONTACT", "msid",
-                        "contact " + std::to_string(contact.id) + ": the reference side has no segments",
-                        "Check the set or part of the reference side");
+    diagnostics.warning(
+        "contact-no-segments", contact.where, "CONTACT", "msid",
+        "contact " + std::to_string(contact.id) + ": the reference side has no segments",
+        "Check the set or part of the reference side");
   add(a, b, false);
   if (is_two_way(contact.kind) && !a.segments.empty()) add(std::move(b), std::move(a), true);
 }
@@ -112,7 +116,8 @@ void Contacts::add_transducer(const Model& model, int index, const SurfaceSource
 
 void Contacts::forces(const Model&, State& state, Team& team) {
   const double dt = state.dt;
-  // the first forces have no step behind them: stiffness that depends on one takes the expected step
+  // the first forces have no step behind them: stiffness that depends on one takes the expected
+  // step
   for (auto& pass : passes_) pass->forces(state, team, dt > 0 ? dt : initial_dt_);
   tied_->forces(state);
   if (!report_complete_) complete_report();

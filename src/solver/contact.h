@@ -1,5 +1,6 @@
 #pragma once
-// All contacts of a run: penalty contacts (contact_pass.h), tied contacts (contact_tied.h), and what they report.
+// All contacts of a run: penalty contacts (contact_pass.h), tied contacts (contact_tied.h), and
+// what they report.
 #include <iosfwd>
 #include <memory>
 #include <string>
@@ -21,29 +22,34 @@ struct InitialReport {
   double largest_penetration = 0;
   std::vector<InitialPenetration> worst;  // at most 20, deepest first
   int tied_nodes = 0;
-  std::vector<int> untied_nodes;          // of tied contacts: too far from any segment
+  std::vector<int> untied_nodes;  // of tied contacts: too far from any segment
 };
 
 class Contacts {
  public:
-  // Builds surfaces and ties. state: positions and masses at t = 0. What is not supported goes to diagnostics.
+  // Builds surfaces and ties. state: positions and masses at t = 0. What is not supported goes to
+  // diagnostics.
   Contacts(const Model& model, State& state, const ContactInput& input, Diagnostics& diagnostics);
   Contacts(const Contacts&) = delete;
   Contacts& operator=(const Contacts&) = delete;
 
-  // Adds the forces of all penalty contacts at t(n) to state.interaction; state.dt: the last step (0 at the start).
+  // Adds the forces of all penalty contacts at t(n) to state.interaction; state.dt: the last step
+  // (0 at the start).
   void forces(const Model& model, State& state, Team& team);
-  // Books the work of the forces at t(n); call when velocities are at t(n+1/2). The other half follows in forces().
+  // Books the work of the forces at t(n); call when velocities are at t(n+1/2). The other half
+  // follows in forces().
   void account(State& state);
 
-  // Moves forces (and moments of offsets) of tied nodes to the nodes that carry them, leaves before roots.
+  // Moves forces (and moments of offsets) of tied nodes to the nodes that carry them, leaves before
+  // roots.
   void transfer_tied_forces(State& state, Team& team);
   // Places tied nodes on their segments, roots before leaves; velocity and position.
   void place_tied_nodes(State& state, Team& team);
   // Nodes tied to rigid segments: to be extra nodes of that part's rigid body.
   const std::vector<RigidTie>& rigid_ties() const { return tied_->rigid_ties(); }
 
-  // Forces on both sides at t(n), energies so far and masses, one entry a contact, in the order of the model.
+  // Forces on both sides at t(n), energies so far and masses, one entry a contact, in the order of
+  // the model.
   struct Resultant {
     int contact = -1;
     Vec3d side_a{0, 0, 0}, side_b{0, 0, 0};
@@ -61,7 +67,8 @@ class Contacts {
   void load(std::istream& in);
 
  private:
-  void add_contact(const Model& model, int contact, const SurfaceSource& source, Diagnostics& diagnostics);
+  void add_contact(const Model& model, int contact, const SurfaceSource& source,
+                   Diagnostics& diagnostics);
   void add_transducer(const Model& model, int contact, const SurfaceSource& source);
   void add_to_transducers(std::vector<Resultant>& resultants) const;
   void complete_report();
@@ -75,7 +82,7 @@ class Contacts {
   std::vector<std::unique_ptr<ContactPass>> passes_;
   std::vector<char> second_pass_;  // tracked side is b
   std::vector<Transducer> transducers_;
-  std::vector<Resultant> fixed_;   // masses
+  std::vector<Resultant> fixed_;  // masses
   InitialReport report_;
   bool report_complete_ = false;
   double stable_time_step_ = 1e30, initial_dt_ = 0;

@@ -8,7 +8,7 @@
 namespace fabrica {
 namespace {
 
-constexpr int chunk_size = 64;       // active nodes
+constexpr int chunk_size = 64;        // active nodes
 constexpr int cull_chunk_size = 512;  // tracked nodes
 constexpr int monitor_chunk_size = 4096;
 
@@ -58,8 +58,10 @@ struct Filter : PairFilter {
   // the other face of the same thin solid, through the material
   bool opposite_face(const ContactNode& n, const ContactSegment& s) const {
     if (s.two_sided || n.part != s.part) return false;
-    const Vec3d &a = start[s.node[0]], &b = start[s.node[1]], &c = start[s.node[2]], &d = start[s.node[3]];
-    const Vec3d normal = contact_detail::unit(s.triangle ? cross(b - a, c - a) : cross(c - a, d - b));
+    const Vec3d &a = start[s.node[0]], &b = start[s.node[1]], &c = start[s.node[2]],
+                &d = start[s.node[3]];
+    const Vec3d normal =
+        contact_detail::unit(s.triangle ? cross(b - a, c - a) : cross(c - a, d - b));
     const Vec3d u = start[n.node] - 0.25 * (a + b + c + d);
     const double near = 4 * s.limit + 2 * std::sqrt(s.area);
     return dot(u, normal) < 0 && dot(n.normal, normal) < 0 && dot(u, u) < near * near;
@@ -92,7 +94,8 @@ ContactPass::ContactPass(const Model& model, const Contact& contact, int contact
       carriers_(carriers),
       start_(model.nodes.x),
       penalty_option_(model.controls.penalty_option) {
-  friction_ = {contact.fs * contact.fsf, contact.fd * contact.fsf, contact.dc, contact.vc * contact.vsf};
+  friction_ = {contact.fs * contact.fsf, contact.fd * contact.fsf, contact.dc,
+               contact.vc * contact.vsf};
   std::vector<double> sizes;
   for (const ContactSegment& s : reference_.segments) {
     sizes.push_back(std::sqrt(s.area));
@@ -156,7 +159,8 @@ void ContactPass::monitor(const State& state, Team& team, double& outer, double&
     double a = 0, b = 0;
     for (std::size_t i = std::size_t(chunk) * monitor_chunk_size; i < end; ++i) {
       const Vec3d& x = state.nodes[nodes_[i]].x;
-      const Vec3d u = x - outer_reference_[i] - shift_outer, w = x - inner_reference_[i] - shift_inner;
+      const Vec3d u = x - outer_reference_[i] - shift_outer,
+                  w = x - inner_reference_[i] - shift_inner;
       a = std::max(a, dot(u, u)), b = std::max(b, dot(w, w));
     }
     worst[2 * chunk] = a, worst[2 * chunk + 1] = b;
@@ -178,12 +182,14 @@ void ContactPass::search(const State& state) {
     Vec3d low = state.nodes[s.node[0]].x, high = low;
     for (int n : s.node) {
       const Vec3d& x = state.nodes[n].x;
-      for (int d = 0; d < 3; ++d) low[d] = std::min(low[d], x[d]), high[d] = std::max(high[d], x[d]);
+      for (int d = 0; d < 3; ++d)
+        low[d] = std::min(low[d], x[d]), high[d] = std::max(high[d], x[d]);
     }
     const Vec3d m{margin, margin, margin};
     boxes[b] = {low - m, high + m};
   }
-  const PointBoxPairs pairs = find_pairs(points, boxes, Filter(tracked_, reference_, carriers_, start_));
+  const PointBoxPairs pairs =
+      find_pairs(points, boxes, Filter(tracked_, reference_, carriers_, start_));
   std::vector<ContactCandidate> next(pairs.box.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const bool had = !first_.empty();
@@ -226,8 +232,9 @@ void ContactPass::cull_node(const State& state, int node, std::vector<int>& pair
       far |= x[d] < low - margin || x[d] > high + margin;
     }
     if (far) continue;
-    const SurfacePoint p = s.triangle ? closest_point_triangle(X, x)
-                                      : closest_point_quad(X, x, candidates_[c].r, candidates_[c].s);
+    const SurfacePoint p = s.triangle
+                               ? closest_point_triangle(X, x)
+                               : closest_point_quad(X, x, candidates_[c].r, candidates_[c].s);
     const double distance = norm(x - p.x);
     if (distance > margin) continue;
     const bool inside = p.feature == 0;
@@ -301,8 +308,8 @@ double ContactPass::side_of(const Evaluation& e) const {
 }
 
 // which pairs push: the closest, and others that push in another direction
-int ContactPass::select(const State& state, const ActiveNode& active, const Evaluation* list, int count,
-                        Accepted* accepted) {
+int ContactPass::select(const State& state, const ActiveNode& active, const Evaluation* list,
+                        int count, Accepted* accepted) {
   int used = 0;
   const double same = 1e-9 * size_;
   for (int i = 0; i < count && used < max_slots; ++i) {
@@ -332,7 +339,8 @@ int ContactPass::select(const State& state, const ActiveNode& active, const Eval
     // inside a convex edge the closer face pushes alone; in a groove both do
     bool convex = false;
     for (int j = 0; j < used && behind; ++j)
-      convex |= dot(centre(state, s) - list[accepted[j].evaluation].point.x, accepted[j].direction) < 0;
+      convex |=
+          dot(centre(state, s) - list[accepted[j].evaluation].point.x, accepted[j].direction) < 0;
     if (convex) continue;
     Vec3d direction = side * e.point.normal;
     if (feature > 0 && e.distance > 1e-12 * size_) direction = (1 / signed_distance) * e.gap;
@@ -392,8 +400,9 @@ void ContactPass::node_forces(State& state, const ActiveNode& active, int chunk)
     next[i].segment = c.segment;
     if (!started_) {
       next[i].baseline = accepted[i].depth;
-      chunk_initial_[chunk].push_back({contact_index_, tracked_.nodes[active.tracked].node, c.segment,
-                                       reference_.segments[c.segment].part, accepted[i].depth});
+      chunk_initial_[chunk].push_back({contact_index_, tracked_.nodes[active.tracked].node,
+                                       c.segment, reference_.segments[c.segment].part,
+                                       accepted[i].depth});
     }
     push(state, active.tracked, e, accepted[i], next[i], chunk);
   }
@@ -422,8 +431,7 @@ void ContactPass::push(State& state, int tracked, const Evaluation& e, const Acc
   }
   slot.baseline = std::min(slot.baseline, a.depth);
   const double depth = a.depth - slot.baseline, rate = -dot(v, a.direction);
-  const double normal =
-      depth > 0 ? normal_force(k, depth, rate, mass, contact_.vdc / 100) : 0.0;
+  const double normal = depth > 0 ? normal_force(k, depth, rate, mass, contact_.vdc / 100) : 0.0;
   Vec3d friction{0, 0, 0};
   if (friction_.active()) {
     const Vec3d slide = v + rate * a.direction;

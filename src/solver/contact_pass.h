@@ -1,10 +1,13 @@
 #pragma once
 // One direction of a contact: tracked nodes against reference segments. Three stages:
-//   candidates  cells, rare: pairs within contact distance + skin D; valid while 2 max |u| < D, u the displacement
+//   candidates  cells, rare: pairs within contact distance + skin D; valid while 2 max |u| < D, u
+//   the displacement
 //               since the search less a common translation
-//   active      from candidates, now and then: pairs within contact distance + d, valid while 2 max |u| < d
-//   forces      every cycle over active pairs: closest point, penetration, penalty, friction (contact/penalty.h)
-// Nodes are worked on in fixed chunks and forces are added in fixed point: same bits for any number of threads.
+//   active      from candidates, now and then: pairs within contact distance + d, valid while 2 max
+//   |u| < d forces      every cycle over active pairs: closest point, penetration, penalty,
+//   friction (contact/penalty.h)
+// Nodes are worked on in fixed chunks and forces are added in fixed point: same bits for any number
+// of threads.
 #include <iosfwd>
 #include <vector>
 
@@ -20,7 +23,7 @@ namespace fabrica {
 
 struct ContactCandidate {
   int segment;
-  float r = 0, s = 0;  // last projection
+  float r = 0, s = 0;    // last projection
   std::int8_t side = 0;  // of a two-sided segment the node is on; 0: not known
 };
 
@@ -49,8 +52,8 @@ class ContactPass {
   ContactPass(const Model& model, const Contact& contact, int contact_index, ContactSurface tracked,
               ContactSurface reference, const CarrierNodes& carriers);
 
-  // Adds forces to state.interaction and the second half of the work of the last step to the energies.
-  // step: what SOFT=1 takes for dt.
+  // Adds forces to state.interaction and the second half of the work of the last step to the
+  // energies. step: what SOFT=1 takes for dt.
   void forces(State& state, Team& team, double step);
   // First half of the work of this step: forces at t(n), velocities at t(n+1/2).
   void account(State& state);
@@ -95,7 +98,8 @@ class ContactPass {
   int select(const State& state, const ActiveNode& active, const Evaluation* list, int count,
              Accepted* accepted);
   void node_forces(State& state, const ActiveNode& active, int chunk);
-  void push(State& state, int tracked, const Evaluation& e, const Accepted& a, ContactSlot& slot, int chunk);
+  void push(State& state, int tracked, const Evaluation& e, const Accepted& a, ContactSlot& slot,
+            int chunk);
   void remember_sides(const Evaluation* list, int count);
   double side_of(const Evaluation& e) const;
   bool in_contact(int tracked) const { return slots_[max_slots * tracked].segment >= 0; }

@@ -103,7 +103,10 @@ void SurfaceSource::collect_faces() {
       volume += cone;
       if (c.count == 3) c.node[3] = c.node[2];
       own.push_back({key_of(distinct({c.node[0], c.node[1], c.node[2], c.node[3]})),
-                     {c.node[0], c.node[1], c.node[2], c.node[3]}, e, 0, true});
+                     {c.node[0], c.node[1], c.node[2], c.node[3]},
+                     e,
+                     0,
+                     true});
     }
     for (Face& f : own) f.volume = volume, faces_.push_back(f);
   }
@@ -174,7 +177,8 @@ void SurfaceSource::add_shell(int shell, const Contact& contact, bool reference,
   g.area = norm(area_vector(model_.nodes.x, corners));
   double scale = model_.controls.contact_scale * (reference ? contact.sfm : contact.sfs);
   const double given = reference ? contact.mst : contact.sst;
-  double thickness = input_.shell_thickness[shell], factor = reference ? contact.sfmt : contact.sfst;
+  double thickness = input_.shell_thickness[shell],
+         factor = reference ? contact.sfmt : contact.sfst;
   if (const auto& p = model_.parts[g.part].contact) {
     if (p->stiffness_scale > 0) scale *= p->stiffness_scale;
     if (p->thickness > 0) thickness = p->thickness;
@@ -262,7 +266,8 @@ void SurfaceSource::collect_nodes(const Contact& contact, ContactSurface& s) con
   std::map<int, std::pair<double, int>> stiffness;
   for (ContactNode& n : s.nodes) {
     if (!uses_thickness(model_, contact)) n.half_thickness = 0;
-    if (contact.sst > 0 && n.half_thickness > 0 && s.segments.empty()) n.half_thickness = contact.sst / 2;
+    if (contact.sst > 0 && n.half_thickness > 0 && s.segments.empty())
+      n.half_thickness = contact.sst / 2;
     auto& entry = nodes.emplace(n.node, n).first->second;
     entry.half_thickness = std::max(entry.half_thickness, n.half_thickness);
   }
@@ -277,7 +282,9 @@ void SurfaceSource::collect_nodes(const Contact& contact, ContactSurface& s) con
       if (n.part < 0) n.part = g.part;
       n.half_thickness = std::max(n.half_thickness, g.half_thickness);
       stiffness[a].first += g.stiffness, ++stiffness[a].second;
-      if (!g.two_sided) n.normal += area_vector(model_.nodes.x, distinct({g.node[0], g.node[1], g.node[2], g.node[3]}));
+      if (!g.two_sided)
+        n.normal +=
+            area_vector(model_.nodes.x, distinct({g.node[0], g.node[1], g.node[2], g.node[3]}));
     }
   }
   std::vector<bool> on_edge(model_.nodes.size(), false);
@@ -317,7 +324,8 @@ ContactSurface SurfaceSource::build(const Contact& contact, const ContactSide& s
     for (const Face& f : faces_)
       if (f.exterior && wanted[model_.solids.part[f.solid]]) add_solid_face(f, contact, scale, s);
     for (int e = 0; e < model_.shells.size(); ++e)
-      if (model_.shells.part[e] >= 0 && wanted[model_.shells.part[e]]) add_shell(e, contact, reference, s);
+      if (model_.shells.part[e] >= 0 && wanted[model_.shells.part[e]])
+        add_shell(e, contact, reference, s);
     add_beam_nodes(side, s);
   }
   // a box keeps what starts inside it

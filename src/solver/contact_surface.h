@@ -1,6 +1,7 @@
 #pragma once
-// Surfaces of contacts: segments of shells (both sides), of exterior faces of solids, of segment sets; and the nodes
-// on them. Contact stiffness and thickness are those of the start (contact/penalty.h).
+// Surfaces of contacts: segments of shells (both sides), of exterior faces of solids, of segment
+// sets; and the nodes on them. Contact stiffness and thickness are those of the start
+// (contact/penalty.h).
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -18,16 +19,17 @@ struct ContactInput {
 };
 
 struct ContactSegment {
-  int node[4];                // triangle: node[3] == node[2]
+  int node[4];  // triangle: node[3] == node[2]
   int part = -1;
-  int body = -1;              // rigid body all of it belongs to, or -1
+  int body = -1;  // rigid body all of it belongs to, or -1
   double half_thickness = 0;
-  double stiffness = 0;       // with SLSFAC and SFS/SFM
-  double limit = 0;           // deeper than this behind the surface: not in contact
+  double stiffness = 0;  // with SLSFAC and SFS/SFM
+  double limit = 0;      // deeper than this behind the surface: not in contact
   double area = 0;
   bool triangle = false;
-  bool two_sided = true;      // false: the normal points out of a solid
-  std::uint8_t free_features = 0;  // bit i: edge i -> i+1 belongs to no other segment; bit 4+i: corner i on such
+  bool two_sided = true;  // false: the normal points out of a solid
+  std::uint8_t free_features =
+      0;  // bit i: edge i -> i+1 belongs to no other segment; bit 4+i: corner i on such
 };
 
 struct ContactNode {
@@ -44,7 +46,8 @@ struct ContactSurface {
   std::vector<ContactNode> nodes;  // ascending node index
 };
 
-// What does not depend on the contact: which faces of solids are exterior, which nodes move together.
+// What does not depend on the contact: which faces of solids are exterior, which nodes move
+// together.
 class SurfaceSource {
  public:
   SurfaceSource(const Model& model, const ContactInput& input);
@@ -62,9 +65,11 @@ class SurfaceSource {
   };
   void collect_faces();
   void find_bodies();
-  void add_solid_face(const Face& face, const Contact& contact, double scale, ContactSurface& s) const;
+  void add_solid_face(const Face& face, const Contact& contact, double scale,
+                      ContactSurface& s) const;
   void add_shell(int shell, const Contact& contact, bool reference, ContactSurface& s) const;
-  void add_set(const SegmentSet& set, const Contact& contact, bool reference, ContactSurface& s) const;
+  void add_set(const SegmentSet& set, const Contact& contact, bool reference,
+               ContactSurface& s) const;
   void add_beam_nodes(const ContactSide& side, ContactSurface& s) const;
   void add_set_nodes(const NodeSet& set, ContactSurface& s) const;
   void finish_segment(ContactSegment& segment) const;

@@ -1,4 +1,5 @@
-// Contact driven by a small explicit integrator of its own: point masses and rigid translations, no elements.
+// Contact driven by a small explicit integrator of its own: point masses and rigid translations, no
+// elements.
 #include "solver/contact.h"
 
 #include <doctest/doctest.h>
@@ -34,7 +35,8 @@ struct Rig {
     return model.nodes.size() - 1;
   }
   // n x m flat shells from origin along a and b
-  std::vector<int> add_plate(int part, Vec3d origin, Vec3d a, Vec3d b, int n, int m, double thickness) {
+  std::vector<int> add_plate(int part, Vec3d origin, Vec3d a, Vec3d b, int n, int m,
+                             double thickness) {
     std::vector<int> nodes;
     for (int j = 0; j <= m; ++j)
       for (int i = 0; i <= n; ++i)
@@ -61,9 +63,9 @@ struct Rig {
         for (int i = 0; i < n; ++i) {
           model.solids.id.push_back(model.solids.size() + 1);
           model.solids.part.push_back(part);
-          model.solids.node.push_back({at(i, j, k), at(i + 1, j, k), at(i + 1, j + 1, k), at(i, j + 1, k),
-                                       at(i, j, k + 1), at(i + 1, j, k + 1), at(i + 1, j + 1, k + 1),
-                                       at(i, j + 1, k + 1), -1, -1});
+          model.solids.node.push_back({at(i, j, k), at(i + 1, j, k), at(i + 1, j + 1, k),
+                                       at(i, j + 1, k), at(i, j, k + 1), at(i + 1, j, k + 1),
+                                       at(i + 1, j + 1, k + 1), at(i, j + 1, k + 1), -1, -1});
         }
     return nodes;
   }
@@ -100,7 +102,8 @@ struct Rig {
         f += state.force[n], m += state.nodes[n].mass;
         if (!load.empty()) f += load[n];
       }
-      for (int n : group) state.nodes[n].v += (dt / m) * f, state.nodes[n].x += dt * state.nodes[n].v;
+      for (int n : group)
+        state.nodes[n].v += (dt / m) * f, state.nodes[n].x += dt * state.nodes[n].v;
     }
     contacts->account(state);
     state.time += dt, state.dt_previous = dt;
@@ -129,8 +132,9 @@ struct Blocks : Rig {
 }  // namespace
 
 TEST_CASE("contact keeps linear momentum and gives a frictionless bounce its energy back") {
-  for (ContactKind kind : {ContactKind::automatic_single_surface, ContactKind::automatic_surface_to_surface,
-                           ContactKind::automatic_nodes_to_surface, ContactKind::surface_to_surface}) {
+  for (ContactKind kind :
+       {ContactKind::automatic_single_surface, ContactKind::automatic_surface_to_surface,
+        ContactKind::automatic_nodes_to_surface, ContactKind::surface_to_surface}) {
     Blocks rig(kind);
     rig.start(0.01);
     for (int n : rig.upper) rig.state.nodes[n].v = {0, 0, -0.01};
@@ -179,8 +183,8 @@ TEST_CASE("block on an incline slides with g (sin - mu cos) and sticks below the
     const double a = angle * M_PI / 180;
     const Vec3d down{std::cos(a), 0, -std::sin(a)}, normal{std::sin(a), 0, std::cos(a)};
     rig.add_plate(plane, {0, 0, 0}, 40.0 * down, {0, 4, 0}, 40, 4, 0.2);
-    const auto nodes =
-        rig.add_plate(block, 1.1 * down + Vec3d{0, 1.05, 0} + 0.2 * normal, 2.0 * down, {0, 2, 0}, 2, 2, 0.2);
+    const auto nodes = rig.add_plate(block, 1.1 * down + Vec3d{0, 1.05, 0} + 0.2 * normal,
+                                     2.0 * down, {0, 2, 0}, 2, 2, 0.2);
     Contact& c = rig.add_contact(ContactKind::automatic_nodes_to_surface, {block}, {plane});
     c.fs = mu, c.fd = mu, c.vdc = 20;
     rig.start(0.02);
@@ -196,7 +200,8 @@ TEST_CASE("block on an incline slides with g (sin - mu cos) and sticks below the
     for (int i = 0; i < 1000; ++i) rig.step(team, dt, {nodes});
     const double acceleration = (speed() - v0) / (1000 * dt);
     if (angle == 30.0) {
-      CHECK(acceleration / (g * (std::sin(a) - mu * std::cos(a))) == doctest::Approx(1).epsilon(0.0025));
+      CHECK(acceleration / (g * (std::sin(a) - mu * std::cos(a))) ==
+            doctest::Approx(1).epsilon(0.0025));
       CHECK(rig.state.energy.contact_friction > 0);
     } else {
       CHECK(std::abs(acceleration) < 0.005 * g);
@@ -210,19 +215,22 @@ TEST_CASE("penetration at the start is not pushed back, shells keep their thickn
   Rig rig;
   const int a = rig.add_part(), b = rig.add_part();
   rig.add_plate(a, {0, 0, 0}, {4, 0, 0}, {0, 4, 0}, 4, 4, 0.2);
-  const auto upper = rig.add_plate(b, {0.6, 0.7, 0.13}, {2, 0, 0}, {0, 2, 0}, 3, 3, 0.1);  // 0.02 too deep
+  const auto upper =
+      rig.add_plate(b, {0.6, 0.7, 0.13}, {2, 0, 0}, {0, 2, 0}, 3, 3, 0.1);  // 0.02 too deep
   rig.add_contact(ContactKind::automatic_single_surface, {a, b});
   rig.start(0.01);
   Team team(1);
   rig.contacts->forces(rig.model, rig.state, team);
-  for (std::size_t i = 0; i < rig.state.nodes.size(); ++i) CHECK(norm(rig.state.interaction.take(i)) == 0);
+  for (std::size_t i = 0; i < rig.state.nodes.size(); ++i)
+    CHECK(norm(rig.state.interaction.take(i)) == 0);
   const InitialReport& report = rig.contacts->initial_report();
   CHECK(report.penetrating_nodes >= 16);
   CHECK(report.largest_penetration == doctest::Approx(0.02));
   // moved out and back in: the whole thickness counts now
   for (int n : upper) rig.state.nodes[n].x.z = 0.16;
   rig.contacts->forces(rig.model, rig.state, team);
-  for (std::size_t i = 0; i < rig.state.nodes.size(); ++i) CHECK(norm(rig.state.interaction.take(i)) == 0);
+  for (std::size_t i = 0; i < rig.state.nodes.size(); ++i)
+    CHECK(norm(rig.state.interaction.take(i)) == 0);
   for (int n : upper) rig.state.nodes[n].x.z = 0.149;
   rig.contacts->forces(rig.model, rig.state, team);
   double up = 0;
@@ -239,7 +247,8 @@ TEST_CASE("no pair within reach is missed while particles move") {
   rig.start(0.01);
   std::mt19937 random(11);
   std::uniform_real_distribution<double> u(-1, 1);
-  for (NodeMotion& n : rig.state.nodes) n.v = {1 + 0.2 * u(random), 0.2 * u(random), 0.2 * u(random)};
+  for (NodeMotion& n : rig.state.nodes)
+    n.v = {1 + 0.2 * u(random), 0.2 * u(random), 0.2 * u(random)};
   Team team(1);
   const ContactPass& pass = *rig.contacts->passes()[0];
   int near_pairs = 0, missed = 0;
@@ -370,5 +379,6 @@ TEST_CASE("a penalty tie holds a node in place and keeps momentum") {
   CHECK(stored > 0);
   // travel of the spring: v sqrt(m/k)
   CHECK(std::abs(gap - 0.15) < 0.05);
-  CHECK((kinetic + rig.state.energy.contact) / (0.5 * 16 * 1e-4) == doctest::Approx(1).epsilon(0.005));
+  CHECK((kinetic + rig.state.energy.contact) / (0.5 * 16 * 1e-4) ==
+        doctest::Approx(1).epsilon(0.005));
 }

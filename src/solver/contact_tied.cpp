@@ -15,11 +15,11 @@ namespace {
 
 // segment as it is now: frame, point that carries the node, rotation operator
 struct Segment {
-  Vec3d r[4];        // corners from their mean
-  Vec3d point;       // c = sum phi x
-  Mat3d axes;        // columns of the frame in rows: e1, e2, e3
-  Mat3d inverse;     // T^-1
-  double weight;     // 1/corners
+  Vec3d r[4];     // corners from their mean
+  Vec3d point;    // c = sum phi x
+  Mat3d axes;     // columns of the frame in rows: e1, e2, e3
+  Mat3d inverse;  // T^-1
+  double weight;  // 1/corners
 
   Segment(const State& state, const Tie& t) {
     Vec3d mean{0, 0, 0};
@@ -66,8 +66,7 @@ struct Segment {
 
 double shortest_diagonal(const State& state, const ContactSegment& s) {
   auto x = [&](int i) { return state.nodes[s.node[i]].x; };
-  if (s.triangle)
-    return std::min({norm(x(1) - x(0)), norm(x(2) - x(1)), norm(x(0) - x(2))});
+  if (s.triangle) return std::min({norm(x(1) - x(0)), norm(x(2) - x(1)), norm(x(0) - x(2))});
   return std::min(norm(x(2) - x(0)), norm(x(3) - x(1)));
 }
 
@@ -99,7 +98,8 @@ void TiedNodes::add(int index, const ContactSurface& tracked, const ContactSurfa
   const bool penalty = contact.offset || contact.beam_offset;
   const bool project = !penalty && !contact.constrained_offset && model_.controls.tied_projection;
   double largest_half = 0;
-  for (const ContactNode& n : tracked.nodes) largest_half = std::max(largest_half, n.half_thickness);
+  for (const ContactNode& n : tracked.nodes)
+    largest_half = std::max(largest_half, n.half_thickness);
   auto tolerance = [&](const ContactSegment& s, double half) {
     if (contact.sst < 0) return -contact.sst;
     return std::max(1.2 * (half + s.half_thickness), 0.05 * shortest_diagonal(state, s));
@@ -132,8 +132,8 @@ void TiedNodes::add(int index, const ContactSurface& tracked, const ContactSurfa
       const ContactSegment& s = reference.segments[pairs.box[p]];
       Vec3d X[4];
       for (int c = 0; c < 4; ++c) X[c] = state.nodes[s.node[c]].x;
-      const SurfacePoint q =
-          s.triangle ? closest_point_triangle(X, points[i]) : closest_point_quad(X, points[i], 0, 0);
+      const SurfacePoint q = s.triangle ? closest_point_triangle(X, points[i])
+                                        : closest_point_quad(X, points[i], 0, 0);
       const double distance = norm(points[i] - q.x);
       if (distance <= tolerance(s, n.half_thickness) && distance < best)
         best = distance, segment = pairs.box[p], at = q;
@@ -175,10 +175,11 @@ void TiedNodes::add(int index, const ContactSurface& tracked, const ContactSurfa
     }
   }
   if (missed > 0)
-    diagnostics.warning("untied-nodes", contact.where, "CONTACT_TIED", "",
-                        std::to_string(missed) + " nodes of contact " + std::to_string(contact.id) +
-                            " are too far from every segment and stay free",
-                        "Check the distance between the sides, or set SST to minus the distance to tie over");
+    diagnostics.warning(
+        "untied-nodes", contact.where, "CONTACT_TIED", "",
+        std::to_string(missed) + " nodes of contact " + std::to_string(contact.id) +
+            " are too far from every segment and stay free",
+        "Check the distance between the sides, or set SST to minus the distance to tie over");
 }
 
 void TiedNodes::finish(State& state) {
@@ -260,8 +261,7 @@ void TiedNodes::forces(State& state) {
     const Vec3d f = -t.stiffness * u;
     const Vec3d turn = s.inverse * cross(lever, f);
     state.interaction.add(t.node, f);
-    for (int c = 0; c < t.corners; ++c)
-      state.interaction.add(t.corner[c], -s.share(t, c, f, turn));
+    for (int c = 0; c < t.corners; ++c) state.interaction.add(t.corner[c], -s.share(t, c, f, turn));
     penalty_force_[i] = f;
     power += dot(f, node.v - s.velocity(state, t, lever));
   }
@@ -297,6 +297,8 @@ Vec3d TiedNodes::force_of(int contact) const {
 void TiedNodes::save(std::ostream& out) const {
   out.write(reinterpret_cast<const char*>(&energy_), sizeof energy_);
 }
-void TiedNodes::load(std::istream& in) { in.read(reinterpret_cast<char*>(&energy_), sizeof energy_); }
+void TiedNodes::load(std::istream& in) {
+  in.read(reinterpret_cast<char*>(&energy_), sizeof energy_);
+}
 
 }  // namespace fabrica

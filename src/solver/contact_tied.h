@@ -1,11 +1,13 @@
 #pragma once
-// Nodes tied to segments at t = 0. With c = sum phi_i x_i, r_i = x_i - mean(x), T = 1/4 sum (r_i^2 I - r_i r_i^T):
-//   velocity   v = sum phi_i v_i + W x o,   W = T^-1 1/4 sum r_i x v_i,   o = x - c turns with the segment
-//   force      f_i += phi_i f + 1/4 (T^-1 (o x f + m)) x r_i
-// The second line is the transpose of the first: a tie does no work and keeps linear and angular momentum.
-//   constraint          node moved onto the segment at the start (TIEDPRJ = 0), o = 0; its mass goes to the corners
-//   constrained offset  the same with o as found
-//   offset              penalty k between the node and its place on the segment; both stay free
+// Nodes tied to segments at t = 0. With c = sum phi_i x_i, r_i = x_i - mean(x), T = 1/4 sum (r_i^2
+// I - r_i r_i^T):
+//   velocity   v = sum phi_i v_i + W x o,   W = T^-1 1/4 sum r_i x v_i,   o = x - c turns with the
+//   segment force      f_i += phi_i f + 1/4 (T^-1 (o x f + m)) x r_i
+// The second line is the transpose of the first: a tie does no work and keeps linear and angular
+// momentum.
+//   constraint          node moved onto the segment at the start (TIEDPRJ = 0), o = 0; its mass
+//   goes to the corners constrained offset  the same with o as found offset              penalty k
+//   between the node and its place on the segment; both stay free
 #include <iosfwd>
 #include <vector>
 
@@ -26,7 +28,7 @@ struct RigidTie {
 struct Tie {
   int contact, node;
   int corner[4];
-  int corners;       // 3 or 4
+  int corners;  // 3 or 4
   double phi[4];
   double offset[3];  // in the frame of the segment
   double stiffness;  // of the penalty; 0: constraint
@@ -36,9 +38,10 @@ struct Tie {
 class TiedNodes {
  public:
   explicit TiedNodes(const Model& model) : model_(model) {}
-  // Finds the pairs of one tied contact. dt: the expected step, for penalties on segments without an element.
-  void add(int contact, const ContactSurface& tracked, const ContactSurface& reference, State& state,
-           double dt, Diagnostics& diagnostics);
+  // Finds the pairs of one tied contact. dt: the expected step, for penalties on segments without
+  // an element.
+  void add(int contact, const ContactSurface& tracked, const ContactSurface& reference,
+           State& state, double dt, Diagnostics& diagnostics);
   // After the last add(): orders chains, moves masses, takes the nodes over.
   void finish(State& state);
 
