@@ -1,6 +1,8 @@
 #pragma once
-// Eigenvalues and eigenvectors of a symmetric 3x3 tensor over any lane: cyclic Jacobi with a fixed number of sweeps.
-//   rotation in the plane (p, q): tan phi = sign(d) 2 a_pq / (|d| + sqrt(d^2 + 4 a_pq^2)),  d = a_qq - a_pp  (1)
+// Eigenvalues and eigenvectors of a symmetric 3x3 tensor over any lane: cyclic Jacobi with a fixed
+// number of sweeps.
+//   rotation in the plane (p, q): tan phi = sign(d) 2 a_pq / (|d| + sqrt(d^2 + 4 a_pq^2)),  d =
+//   a_qq - a_pp  (1)
 // Source: Golub and Van Loan, Matrix Computations, section 8.5.
 #include "base/tensor.h"
 
@@ -28,7 +30,8 @@ FABRICA_FN Eigen3<L> eigen_symmetric(const Sym3<L>& s) {
         const L d = a[q][q] - a[p][p], twice = L(2.0) * a[p][q];
         const L length = abs(d) + sqrt(fma(d, d, twice * twice));
         const L ratio = min(abs(twice) / select(length > zero, length, L(1.0)), L(1.0));
-        const L t = select(((d < zero) & (twice < zero)) | ((d >= zero) & (twice >= zero)), ratio, -ratio);
+        const L t =
+            select(((d < zero) & (twice < zero)) | ((d >= zero) & (twice >= zero)), ratio, -ratio);
         const L c = L(1.0) / sqrt(fma(t, t, L(1.0))), sine = t * c;
         a[p][p] = a[p][p] - t * a[p][q];
         a[q][q] = a[q][q] + t * a[p][q];

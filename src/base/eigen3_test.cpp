@@ -31,7 +31,8 @@ void check_random(double spread) {
     for (int i = 0; i < 6; ++i) worst_rebuild = std::max(worst_rebuild, std::abs(back[i] - s[i]));
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
-        worst_orthogonal = std::max(worst_orthogonal, std::abs(dot(e.vector[i], e.vector[j]) - T(i == j)));
+        worst_orthogonal =
+            std::max(worst_orthogonal, std::abs(dot(e.vector[i], e.vector[j]) - T(i == j)));
   }
   CHECK(worst_rebuild < 20 * unit);
   CHECK(worst_orthogonal < 20 * unit);
@@ -48,7 +49,8 @@ TEST_CASE("eigenvectors rebuild the tensor") {
 TEST_CASE("eigenvalues of a known tensor, of the unit tensor and of zero") {
   // 2 on the diagonal, 1 beside it: 1, 1, 4
   const Eigen3<double> e = eigen_symmetric(Sym3<double>{2, 2, 2, 1, 1, 1});
-  const double low = std::min({e.value.x, e.value.y, e.value.z}), high = std::max({e.value.x, e.value.y, e.value.z});
+  const double low = std::min({e.value.x, e.value.y, e.value.z}),
+               high = std::max({e.value.x, e.value.y, e.value.z});
   CHECK(low == doctest::Approx(1).epsilon(1e-14));
   CHECK(high == doctest::Approx(4).epsilon(1e-14));
   CHECK(e.value.x + e.value.y + e.value.z == doctest::Approx(6).epsilon(1e-14));

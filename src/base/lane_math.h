@@ -1,10 +1,10 @@
 #pragma once
-// exp, log, expm1, log1p, pow, cbrt, sin, cos over any lane: one code of adds, multiplies and explicit fma for every width, so
-// that the bits do not depend on the width or the C library.
-//   exp x = 2^n e^r,          n = round(x / ln 2), |r| <= ln 2 / 2, Taylor series in r                     (1)
-//   log x = k ln 2 + log(1+f), 1+f in [sqrt(1/2), sqrt(2)], s = f / (2+f),
-//           log(1+f) = f - (f^2/2 - s (f^2/2 + R)),  R = 2 s^2/3 + 2 s^4/5 + ...                           (2)
-//   sin, cos: x = q pi/2 + r with pi/2 in three parts (|x| < 1e4), Taylor series in r                      (3)
+// exp, log, expm1, log1p, pow, cbrt, sin, cos over any lane: one code of adds, multiplies and
+// explicit fma for every width, so that the bits do not depend on the width or the C library.
+//   exp x = 2^n e^r,          n = round(x / ln 2), |r| <= ln 2 / 2, Taylor series in r (1) log x =
+//   k ln 2 + log(1+f), 1+f in [sqrt(1/2), sqrt(2)], s = f / (2+f),
+//           log(1+f) = f - (f^2/2 - s (f^2/2 + R)),  R = 2 s^2/3 + 2 s^4/5 + ... (2)
+//   sin, cos: x = q pi/2 + r with pi/2 in three parts (|x| < 1e4), Taylor series in r (3)
 // Source: W. J. Cody and W. Waite, Software Manual for the Elementary Functions, 1980.
 // Errors: about 1 unit in the last place; pow(x, y) grows with |y log x| / 8.
 #include <cstring>
@@ -21,7 +21,9 @@ namespace fabrica {
 namespace lane_math {
 
 template <class L>
-concept Lane = requires { LaneTraits<L>::width; };
+concept Lane = requires {
+  LaneTraits<L>::width;
+};
 
 template <class L>
 using Bits = typename LaneTraits<L>::Int;
@@ -146,10 +148,12 @@ FABRICA_FN SineCosine<L> sine_cosine(const L& x) {
   const L z = r * r;
   constexpr int last = is_double<L> ? 17 : 9;
   L s = L(((last / 2) % 2 ? -1 : 1) * inverse_factorial(last));
-  for (int i = last - 2; i >= 3; i -= 2) s = fma(s, z, L(((i / 2) % 2 ? -1 : 1) * inverse_factorial(i)));
+  for (int i = last - 2; i >= 3; i -= 2)
+    s = fma(s, z, L(((i / 2) % 2 ? -1 : 1) * inverse_factorial(i)));
   const L sine = fma(r * z, s, r);
   L c = L((((last + 1) / 2) % 2 ? -1 : 1) * inverse_factorial(last + 1));
-  for (int i = last - 1; i >= 4; i -= 2) c = fma(c, z, L(((i / 2) % 2 ? -1 : 1) * inverse_factorial(i)));
+  for (int i = last - 1; i >= 4; i -= 2)
+    c = fma(c, z, L(((i / 2) % 2 ? -1 : 1) * inverse_factorial(i)));
   const L cosine = L(1.0) + fma(z * z, c, L(-0.5) * z);
   // quadrant: k mod 4, computed in numbers
   Bits<L> unused;

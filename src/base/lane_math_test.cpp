@@ -13,7 +13,8 @@ namespace {
 template <class T>
 double ulps(T value, double reference) {
   const T r = T(reference);
-  const double unit = double(std::nextafter(std::abs(r), std::numeric_limits<T>::infinity())) - double(std::abs(r));
+  const double unit =
+      double(std::nextafter(std::abs(r), std::numeric_limits<T>::infinity())) - double(std::abs(r));
   return std::abs(double(value) - reference) / unit;
 }
 
@@ -35,21 +36,33 @@ void check_accuracy() {
   const double big = sizeof(T) == 8 ? 700 : 87;
   auto e = [](T x) { return exp(x); };
   auto l = [](T x) { return log(x); };
-  CHECK(worst<T>(e, [](long double x) { return std::exp(x); }, -big, big) < 2);
-  CHECK(worst<T>(e, [](long double x) { return std::exp(x); }, -1, 1) < 2);
-  CHECK(worst<T>(l, [](long double x) { return std::log(x); }, 0.5, 2) < 2);
-  CHECK(worst<T>(l, [](long double x) { return std::log(x); }, 1e-37, 1e37, true) < 2);
-  CHECK(worst<T>([](T x) { return cbrt(x); }, [](long double x) { return std::cbrt(x); }, 1e-30, 1e30, true) < 2);
-  CHECK(worst<T>([](T x) { return cbrt(x); }, [](long double x) { return std::cbrt(x); }, -8, -0.1) < 2);
+  CHECK(worst<T>(
+            e, [](long double x) { return std::exp(x); }, -big, big) < 2);
+  CHECK(worst<T>(
+            e, [](long double x) { return std::exp(x); }, -1, 1) < 2);
+  CHECK(worst<T>(
+            l, [](long double x) { return std::log(x); }, 0.5, 2) < 2);
+  CHECK(worst<T>(
+            l, [](long double x) { return std::log(x); }, 1e-37, 1e37, true) < 2);
+  CHECK(worst<T>([](T x) { return cbrt(x); }, [](long double x) { return std::cbrt(x); }, 1e-30,
+                 1e30, true) < 2);
+  CHECK(worst<T>([](T x) { return cbrt(x); }, [](long double x) { return std::cbrt(x); }, -8,
+                 -0.1) < 2);
   CHECK(worst<T>([](T x) { return pow(x, T(0.2)); },
-                 [](long double x) { return std::pow(x, (long double)(T(0.2))); }, 1e-6, 1e6, true) < 2);
-  CHECK(worst<T>([](T x) { return pow(x, T(5)); }, [](long double x) { return std::pow(x, 5.0L); }, 0.3, 3) < 4);
+                 [](long double x) { return std::pow(x, (long double)(T(0.2))); }, 1e-6, 1e6,
+                 true) < 2);
+  CHECK(worst<T>([](T x) { return pow(x, T(5)); }, [](long double x) { return std::pow(x, 5.0L); },
+                 0.3, 3) < 4);
   auto e1 = [](T x) { return expm1(x); };
   auto l1 = [](T x) { return log1p(x); };
-  CHECK(worst<T>(e1, [](long double x) { return std::expm1(x); }, -2, 2) < 3);
-  CHECK(worst<T>(l1, [](long double x) { return std::log1p(x); }, -0.5, 1) < 3);
-  CHECK(worst<T>(e1, [](long double x) { return std::expm1(x); }, 1e-9, 1e-2, true) < 3);
-  CHECK(worst<T>(l1, [](long double x) { return std::log1p(x); }, 1e-9, 1e-2, true) < 3);
+  CHECK(worst<T>(
+            e1, [](long double x) { return std::expm1(x); }, -2, 2) < 3);
+  CHECK(worst<T>(
+            l1, [](long double x) { return std::log1p(x); }, -0.5, 1) < 3);
+  CHECK(worst<T>(
+            e1, [](long double x) { return std::expm1(x); }, 1e-9, 1e-2, true) < 3);
+  CHECK(worst<T>(
+            l1, [](long double x) { return std::log1p(x); }, 1e-9, 1e-2, true) < 3);
   // near the zeros of sine and cosine the absolute error counts
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> angle(-100, 100);
@@ -93,7 +106,8 @@ void check_width() {
   for (int k = 0; k < 2000; ++k) {
     P x;
     for (int i = 0; i < W; ++i) set(x, i, T(uniform(random)));
-    const P e = exp(x), l = log(abs(x)), p = pow(abs(x), P(0.2)), c = cbrt(x), s = sin(x), o = cos(x);
+    const P e = exp(x), l = log(abs(x)), p = pow(abs(x), P(0.2)), c = cbrt(x), s = sin(x),
+            o = cos(x);
     bool same = true;
     for (int i = 0; i < W; ++i) {
       const T a = get(x, i), b = std::abs(a);

@@ -1,8 +1,9 @@
 #pragma once
 // Crushable foam (*MAT_CRUSHABLE_FOAM, 063): elastic until a principal stress reaches its bound.
-//   trial s_e + C(E, PR) : D dt;  each principal value is held in  -LCID(1 - V) <= s_i <= TSC               (1)
-//   s_v = DAMP rho c l D,  c = sqrt(E / rho)                                                               (2)
-// V relative volume, 1 - V its loss; unloading is elastic. Source: LS-DYNA theory manual (public), MAT_063.
+//   trial s_e + C(E, PR) : D dt;  each principal value is held in  -LCID(1 - V) <= s_i <= TSC (1)
+//   s_v = DAMP rho c l D,  c = sqrt(E / rho) (2)
+// V relative volume, 1 - V its loss; unloading is elastic. Source: LS-DYNA theory manual (public),
+// MAT_063.
 #include <stdexcept>
 
 #include "base/eigen3.h"
@@ -32,13 +33,14 @@ struct CrushableFoam {
     if (p.integer("model") != 0)
       throw std::invalid_argument("MAT_CRUSHABLE_FOAM: only MODEL = 0 is supported");
     const Elastic e = Elastic::from_youngs(p.real("ro"), p.real("e"), p.real("pr"));
-    return {Real(e.density),     Real(e.bulk),        Real(e.shear),       Real(p.real("e")),
+    return {Real(e.density), Real(e.bulk),        Real(e.shear),       Real(p.real("e")),
             p.curve("lcid"), Real(p.real("tsc")), Real(p.real("damp"))};
   }
   Elastic elastic() const { return {density, bulk, shear}; }
 
   template <class L>
-  FABRICA_FN Sym3<L> stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point, State<L>& state) const {
+  FABRICA_FN Sym3<L> stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point,
+                            State<L>& state) const {
     const L zero = L(0.0), volumetric = trace(strain) * L(bulk - Real(2.0 / 3.0) * shear);
     const Sym3<L> trial = plus_sphere((old - state.viscous) + L(2 * shear) * strain, volumetric);
     L slope = zero;

@@ -1,8 +1,9 @@
 #pragma once
 // Isotropic linear elasticity in rate form (*MAT_ELASTIC).
 //   ds/dt = 2 G dev(D),   dp/dt = -K tr(D)                                   (1)
-// s deviatoric stress, p pressure, D rate of deformation, G shear modulus, K bulk modulus. The element supplies the
-// objective (Jaumann) part. Source: any text on hypoelasticity, e.g. Belytschko, Liu, Moran, ch. 5.
+// s deviatoric stress, p pressure, D rate of deformation, G shear modulus, K bulk modulus. The
+// element supplies the objective (Jaumann) part. Source: any text on hypoelasticity, e.g.
+// Belytschko, Liu, Moran, ch. 5.
 #include "material/point.h"
 
 namespace fabrica {
@@ -34,19 +35,26 @@ struct ElasticLaw {
 
   // Plane stress: s_zz = 0 gives e_zz = -nu/(1-nu) (e_xx + e_yy); strain.zz is not read.
   template <class L>
-  FABRICA_FN Sym3<L> plane_stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>&, State<L>&, L& dzz) const {
+  FABRICA_FN Sym3<L> plane_stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>&, State<L>&,
+                                  L& dzz) const {
     const Real lame = bulk - Real(2.0 / 3.0) * shear, ratio = lame / (lame + 2 * shear);
     const L plane = strain.xx + strain.yy, twice = L(2 * shear);
     dzz = L(-ratio) * plane;
     const L both = L(2 * shear * ratio) * plane;
-    return {old.xx + fma(twice, strain.xx, both), old.yy + fma(twice, strain.yy, both), L(0.0),
-            fma(twice, strain.xy, old.xy),        fma(twice, strain.yz, old.yz),        fma(twice, strain.zx, old.zx)};
+    return {old.xx + fma(twice, strain.xx, both),
+            old.yy + fma(twice, strain.yy, both),
+            L(0.0),
+            fma(twice, strain.xy, old.xy),
+            fma(twice, strain.yz, old.yz),
+            fma(twice, strain.zx, old.zx)};
   }
   // Beam or truss fibre: s_yy = s_zz = s_yz = 0; strain.xx, xy, zx are read.
   template <class L>
-  FABRICA_FN Sym3<L> uniaxial(const Sym3<L>& old, const Sym3<L>& strain, Point<L>&, State<L>&) const {
+  FABRICA_FN Sym3<L> uniaxial(const Sym3<L>& old, const Sym3<L>& strain, Point<L>&,
+                              State<L>&) const {
     const L E = L(9 * bulk * shear / (3 * bulk + shear)), twice = L(2 * shear), zero = L(0.0);
-    return {fma(E, strain.xx, old.xx), zero, zero, fma(twice, strain.xy, old.xy), zero, fma(twice, strain.zx, old.zx)};
+    return {fma(E, strain.xx, old.xx),     zero, zero,
+            fma(twice, strain.xy, old.xy), zero, fma(twice, strain.zx, old.zx)};
   }
 };
 

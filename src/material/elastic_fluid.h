@@ -1,7 +1,9 @@
 #pragma once
-// Elastic fluid (*MAT_ELASTIC_FLUID): bulk elasticity with a cavitation limit and viscosity, no shear stiffness.
-//   dp/dt = -K tr(D),  p >= -CP,   s = VC l c rho dev(D),  c = sqrt(K / rho)                               (1)
-// p pressure, s deviator, l length of the element, rho density. Source: LS-DYNA keyword manual (public), MAT_001.
+// Elastic fluid (*MAT_ELASTIC_FLUID): bulk elasticity with a cavitation limit and viscosity, no
+// shear stiffness.
+//   dp/dt = -K tr(D),  p >= -CP,   s = VC l c rho dev(D),  c = sqrt(K / rho) (1)
+// p pressure, s deviator, l length of the element, rho density. Source: LS-DYNA keyword manual
+// (public), MAT_001.
 #include "material/point.h"
 #include "material/relaxation.h"
 
@@ -29,7 +31,8 @@ struct ElasticFluid {
   Elastic elastic() const { return {density, bulk, 0}; }
 
   template <class L>
-  FABRICA_FN Sym3<L> stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point, State<L>&) const {
+  FABRICA_FN Sym3<L> stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point,
+                            State<L>&) const {
     const L mean = fma(L(bulk), trace(strain), trace(old) * L(1.0 / 3.0));
     // density over c: rho c = sqrt(K rho)
     const L impedance = sqrt(L(bulk) * L(density) / point.volume_ratio);

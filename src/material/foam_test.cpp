@@ -91,7 +91,8 @@ TEST_CASE("057: viscous stresses") {
 
 // fast: E1 + E2 act together; slow: the viscous branch carries V_t x rate
 TEST_CASE("062: fast and slow limits") {
-  const TestParameters p{{"ro", 5e-8}, {"e1", .02}, {"n1", 4}, {"v2", .05}, {"e2", .1}, {"n2", .2}, {"pr", 0}};
+  const TestParameters p{{"ro", 5e-8}, {"e1", .02}, {"n1", 4}, {"v2", .05},
+                         {"e2", .1},   {"n2", .2},  {"pr", 0}};
   const auto m = ViscousFoam::from(p);
   auto state = fresh_state<ViscousFoam>();
   const double V = 0.8, E = 0.02 * std::pow(V, -4), Vt = 0.05 * std::pow(0.2, 0.2);

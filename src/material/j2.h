@@ -1,13 +1,14 @@
 #pragma once
-// Return mapping of von Mises plasticity with isotropic and linear kinematic hardening, in three dimensions and
-// in plane stress (transverse shear takes part in the yield function).
-//   xi = s - a,   q^2 = 3/2 dev(xi):dev(xi),   q <= Y(ep + dep),   dep = 2/3 lambda q                       (1)
-//   d(plastic strain) = lambda dev(xi),   da = 2/3 Hk lambda dev(xi)
-//   q(lambda)^2 = A / (1 + ca lambda)^2 + B / (1 + cb lambda)^2,   cb = 2G + 2/3 Hk                         (2)
-//   three dimensions: A = 0, B = q_trial^2
-//   plane stress:     A = (xx+yy)^2/4, B = 3/4 (yy-xx)^2 + 3 (xy^2+yz^2+zx^2), ca = E/(3(1-nu)) + 2/3 Hk
+// Return mapping of von Mises plasticity with isotropic and linear kinematic hardening, in three
+// dimensions and in plane stress (transverse shear takes part in the yield function).
+//   xi = s - a,   q^2 = 3/2 dev(xi):dev(xi),   q <= Y(ep + dep),   dep = 2/3 lambda q (1) d(plastic
+//   strain) = lambda dev(xi),   da = 2/3 Hk lambda dev(xi) q(lambda)^2 = A / (1 + ca lambda)^2 + B
+//   / (1 + cb lambda)^2,   cb = 2G + 2/3 Hk                         (2) three dimensions: A = 0, B
+//   = q_trial^2 plane stress:     A = (xx+yy)^2/4, B = 3/4 (yy-xx)^2 + 3 (xy^2+yz^2+zx^2), ca =
+//   E/(3(1-nu)) + 2/3 Hk
 // xi of plane stress is s - (a - a_zz I), so that its zz part vanishes.
-// Source: Simo and Taylor, Int. J. Num. Meth. Eng. 22 (1986); Simo and Hughes, Computational Inelasticity, ch. 3.
+// Source: Simo and Taylor, Int. J. Num. Meth. Eng. 22 (1986); Simo and Hughes, Computational
+// Inelasticity, ch. 3.
 #include "material/lookup.h"
 #include "material/point.h"
 
@@ -45,9 +46,9 @@ struct J2Modes {
   }
 };
 
-// lambda of the yield condition q = Y(dep) where the yield stress depends on the plastic increment through
-// yield(dep, slope): Newton on Y/q - 1, which is nearly linear in lambda. Trial states inside the yield surface
-// give 0.
+// lambda of the yield condition q = Y(dep) where the yield stress depends on the plastic increment
+// through yield(dep, slope): Newton on Y/q - 1, which is nearly linear in lambda. Trial states
+// inside the yield surface give 0.
 template <bool plane, int passes, class L, class Yield>
 FABRICA_FN L j2_newton(const J2Modes<L>& modes, const Yield& yield) {
   const L per_x = L(Real(2.0 / 3.0) / modes.cb);
@@ -62,10 +63,12 @@ FABRICA_FN L j2_newton(const J2Modes<L>& modes, const Yield& yield) {
   return x * L(1 / modes.cb);
 }
 
-// The same where the slope of the yield stress is unbounded at small rates: regula falsi (Anderson and Bjorck 1973) on
-// cb lambda = bound root^4, 0 <= root <= 1; bound follows from the static yield stress, the least that Y can be.
+// The same where the slope of the yield stress is unbounded at small rates: regula falsi (Anderson
+// and Bjorck 1973) on cb lambda = bound root^4, 0 <= root <= 1; bound follows from the static yield
+// stress, the least that Y can be.
 template <bool plane, int passes, class L, class Yield>
-FABRICA_FN L j2_bracket(const J2Modes<L>& modes, const L& q_trial, const L& static_yield, const Yield& yield) {
+FABRICA_FN L j2_bracket(const J2Modes<L>& modes, const L& q_trial, const L& static_yield,
+                        const Yield& yield) {
   const Real least = plane && modes.ratio < 1 ? modes.ratio : Real(1);
   const L excess = q_trial / max(static_yield, L(1e-6) * q_trial + L(1e-30)) - L(1.0);
   const L bound = max(excess, L(0.0)) * L(1 / least);
@@ -81,7 +84,8 @@ FABRICA_FN L j2_bracket(const J2Modes<L>& modes, const L& q_trial, const L& stat
   for (int i = 0; i < passes; ++i) {
     const L rise = at_b - at_a;
     const auto flat = rise == L(0.0);
-    root = select(flat, b, clamp(b - at_b * (b - a) / select(flat, L(1.0), rise), min(a, b), max(a, b)));
+    root = select(flat, b,
+                  clamp(b - at_b * (b - a) / select(flat, L(1.0), rise), min(a, b), max(a, b)));
     const L at = residual(root);
     // an end that stays is weighted down, or the secant creeps
     const auto crossed = ((at > L(0.0)) & (at_b <= L(0.0))) | ((at <= L(0.0)) & (at_b > L(0.0)));
@@ -94,7 +98,8 @@ FABRICA_FN L j2_bracket(const J2Modes<L>& modes, const L& q_trial, const L& stat
   return select(q_trial > static_yield, bound * second * second, L(0.0)) * L(1 / modes.cb);
 }
 
-// Strain increments completed for the rate measure: yield matters where the material flows, and flow keeps volume.
+// Strain increments completed for the rate measure: yield matters where the material flows, and
+// flow keeps volume.
 template <class L>
 FABRICA_FN Sym3<L> plane_flow_strain(const Sym3<L>& strain) {
   return {strain.xx, strain.yy, -(strain.xx + strain.yy), strain.xy, strain.yz, strain.zx};
@@ -114,7 +119,8 @@ struct J2Trial {
 };
 
 template <class L>
-FABRICA_FN J2Trial<L> j2_trial(const J2Moduli& m, const Sym3<L>& old, const Sym3<L>& strain, const Sym3<L>& back) {
+FABRICA_FN J2Trial<L> j2_trial(const J2Moduli& m, const Sym3<L>& old, const Sym3<L>& strain,
+                               const Sym3<L>& back) {
   J2Trial<L> t;
   const L volumetric = trace(strain) * L(m.bulk - Real(2.0 / 3.0) * m.shear);
   t.stress = plus_sphere(old + L(2 * m.shear) * strain, volumetric);
@@ -132,9 +138,10 @@ FABRICA_FN J2Trial<L> j2_fibre_trial(const J2Moduli& m, const Sym3<L>& old, cons
                                      const Sym3<L>& back) {
   const L zero = L(0.0), twice = L(2 * m.shear);
   J2Trial<L> t;
-  t.stress = {fma(L(m.youngs()), strain.xx, old.xx), zero, zero, fma(twice, strain.xy, old.xy), zero,
-              fma(twice, strain.zx, old.zx)};
-  t.xi = {t.stress.xx - L(1.5) * back.xx, zero, zero, t.stress.xy - back.xy, zero, t.stress.zx - back.zx};
+  t.stress = {fma(L(m.youngs()), strain.xx, old.xx), zero, zero,
+              fma(twice, strain.xy, old.xy),         zero, fma(twice, strain.zx, old.zx)};
+  t.xi = {t.stress.xx - L(1.5) * back.xx, zero, zero,
+          t.stress.xy - back.xy,          zero, t.stress.zx - back.zx};
   const Real hardening = Real(2.0 / 3.0) * m.kinematic, cb = 2 * m.shear + hardening;
   t.modes = {t.xi.xx * t.xi.xx, L(3.0) * fma(t.xi.xy, t.xi.xy, t.xi.zx * t.xi.zx),
              (Real(2.0 / 3.0) * m.youngs() + hardening) / cb, cb};
@@ -144,21 +151,23 @@ FABRICA_FN J2Trial<L> j2_fibre_trial(const J2Moduli& m, const Sym3<L>& old, cons
 
 // Fibre stress after the flow lambda.
 template <class L>
-FABRICA_FN Sym3<L> j2_fibre_finish(const J2Moduli& m, const J2Trial<L>& t, const L& lambda, Sym3<L>* back,
-                                   L& increment) {
+FABRICA_FN Sym3<L> j2_fibre_finish(const J2Moduli& m, const J2Trial<L>& t, const L& lambda,
+                                   Sym3<L>* back, L& increment) {
   const L x = L(t.modes.cb) * lambda, pa = fma(L(t.modes.ratio), x, L(1.0)), pb = L(1.0) + x;
   const L r = L(1.0) / (pa * pb), a = pb * r, b = pa * r, zero = L(0.0), twice = L(2 * m.shear);
   increment = L(2.0 / 3.0) * lambda * sqrt(fma(t.modes.A * a, a, t.modes.B * b * b));
   const L axial = L(2.0 / 3.0) * lambda * a * t.xi.xx;
-  const Sym3<L> flow{axial, L(-0.5) * axial, L(-0.5) * axial, lambda * b * t.xi.xy, zero, lambda * b * t.xi.zx};
+  const Sym3<L> flow{axial, L(-0.5) * axial,     L(-0.5) * axial, lambda * b * t.xi.xy,
+                     zero,  lambda * b * t.xi.zx};
   if (back) *back += L(Real(2.0 / 3.0) * m.kinematic) * flow;
-  return {t.stress.xx - L(m.youngs()) * axial, zero, zero, t.stress.xy - twice * flow.xy, zero,
-          t.stress.zx - twice * flow.zx};
+  return {t.stress.xx - L(m.youngs()) * axial, zero, zero,
+          t.stress.xy - twice * flow.xy,       zero, t.stress.zx - twice * flow.zx};
 }
 
 // Stress after the flow lambda; moves the back stress and returns dep in `increment`.
 template <class L>
-FABRICA_FN Sym3<L> j2_finish(const J2Moduli& m, const J2Trial<L>& t, const L& lambda, Sym3<L>* back, L& increment) {
+FABRICA_FN Sym3<L> j2_finish(const J2Moduli& m, const J2Trial<L>& t, const L& lambda, Sym3<L>* back,
+                             L& increment) {
   const L scale = L(1.0) / fma(L(t.modes.cb), lambda, L(1.0));
   const L flow = lambda * scale;
   increment = L(2.0 / 3.0) * flow * t.q;
@@ -192,13 +201,18 @@ FABRICA_FN J2Trial<L> j2_plane_trial(const J2Moduli& m, const Sym3<L>& old, cons
 
 // Plane stress after the flow lambda; dzz is the thickness strain increment, elastic and plastic.
 template <class L>
-FABRICA_FN Sym3<L> j2_plane_finish(const J2Moduli& m, const Sym3<L>& old, const J2Trial<L>& t, const L& lambda,
-                                   Sym3<L>* back, L& increment, L& dzz) {
+FABRICA_FN Sym3<L> j2_plane_finish(const J2Moduli& m, const Sym3<L>& old, const J2Trial<L>& t,
+                                   const L& lambda, Sym3<L>* back, L& increment, L& dzz) {
   const L x = L(t.modes.cb) * lambda, pa = fma(L(t.modes.ratio), x, L(1.0)), pb = L(1.0) + x;
   const L r = L(1.0) / (pa * pb), a = pb * r, b = pa * r;
   const L sum = a * (t.xi.xx + t.xi.yy), difference = b * (t.xi.yy - t.xi.xx);
   const L half = L(0.5);
-  const Sym3<L> xi{half * (sum - difference), half * (sum + difference), L(0.0), b * t.xi.xy, b * t.xi.yz, b * t.xi.zx};
+  const Sym3<L> xi{half * (sum - difference),
+                   half * (sum + difference),
+                   L(0.0),
+                   b * t.xi.xy,
+                   b * t.xi.yz,
+                   b * t.xi.zx};
   const L third = sum * L(1.0 / 3.0);
   const Sym3<L> flow = lambda * plus_sphere(xi, -third);
   increment = L(2.0 / 3.0) * lambda * sqrt(fma(t.modes.A * a, a, t.modes.B * b * b));

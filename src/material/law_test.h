@@ -1,6 +1,6 @@
 #pragma once
-// What the tests of laws share. Laws are driven over double lanes in every build; in the mixed build only the
-// parameters are rounded to float.
+// What the tests of laws share. Laws are driven over double lanes in every build; in the mixed
+// build only the parameters are rounded to float.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -36,7 +36,9 @@ Point<L> fresh_point(const M& m, double dt, double volume_ratio = 1, double leng
 
 inline Sym3<double> no_stress() { return {0, 0, 0, 0, 0, 0}; }
 
-inline Mat3<double> diagonal(double a, double b, double c) { return {{{a, 0, 0}, {0, b, 0}, {0, 0, c}}}; }
+inline Mat3<double> diagonal(double a, double b, double c) {
+  return {{{a, 0, 0}, {0, b, 0}, {0, 0, c}}};
+}
 
 template <class M>
 Sym3<double> total_stress(const M& m, const Mat3<double>& F, double dt = 1) {
@@ -94,32 +96,38 @@ inline double largest(const Sym3<double>& s) {
 struct Samples {
   TestParameters elastic{{"ro", 7.8e-6}, {"e", 210}, {"pr", 0.3}};
   TestParameters fluid{{"ro", 1e-6}, {"k", 2.2}, {"vc", 0.1}};
-  TestParameters plastic{{"ro", 7.8e-6}, {"e", 210}, {"pr", .3}, {"sigy", .3}, {"etan", 2.1}, {"beta", .5}};
-  TestParameters plastic_rate{{"ro", 7.8e-6}, {"e", 210},  {"pr", .3},   {"sigy", .3}, {"etan", 2.1},
+  TestParameters plastic{{"ro", 7.8e-6}, {"e", 210},    {"pr", .3},
+                         {"sigy", .3},   {"etan", 2.1}, {"beta", .5}};
+  TestParameters plastic_rate{{"ro", 7.8e-6}, {"e", 210},   {"pr", .3}, {"sigy", .3}, {"etan", 2.1},
                               {"beta", .5},   {"src", .04}, {"srp", 5}, {"vp", 1}};
   TestParameters curved{{"ro", 7.8e-6}, {"e", 210}, {"pr", .3}, {"sigy", .3}};
   TestParameters tabled{{"ro", 7.8e-6}, {"e", 210}, {"pr", .3}, {"vp", 1}};
   TestParameters viscoelastic{{"ro", 1e-6}, {"bulk", 1}, {"g0", .01}, {"gi", .002}, {"beta", .1}};
-  TestParameters kelvin{{"ro", 1e-6}, {"bulk", 1}, {"g0", .01}, {"gi", .002}, {"dc", 10}, {"fo", 1}};
+  TestParameters kelvin{{"ro", 1e-6}, {"bulk", 1}, {"g0", .01},
+                        {"gi", .002}, {"dc", 10},  {"fo", 1}};
   TestParameters mooney{{"ro", 1e-6}, {"a", .4}, {"b", .1}, {"pr", .45}};
-  TestParameters ogden{{"ro", 1e-6},    {"pr", .45},    {"mu1", .63},   {"mu2", .0012},
+  TestParameters ogden{{"ro", 1e-6},  {"pr", .45},     {"mu1", .63},  {"mu2", .0012},
                        {"mu3", -.01}, {"alpha1", 1.3}, {"alpha2", 5}, {"alpha3", -2}};
   TestParameters ogden_viscous{{"ro", 1e-6}, {"pr", .45}, {"mu1", .63}, {"alpha1", 1.3}};
   TestParameters foam{{"ro", 5e-8}, {"e", .001}, {"hu", .2}, {"shape", 2}, {"tc", 1}};
-  TestParameters foam_viscous{{"ro", 5e-8}, {"e", .001}, {"hu", .2}, {"shape", 2},
+  TestParameters foam_viscous{{"ro", 5e-8}, {"e", .001},  {"hu", .2},    {"shape", 2},
                               {"tc", 1},    {"ed", .001}, {"beta1", .1}, {"damp", .1}};
-  TestParameters viscous_foam{{"ro", 5e-8}, {"e1", .02}, {"n1", 4}, {"v2", .05}, {"e2", .1}, {"n2", .2}, {"pr", .05}};
+  TestParameters viscous_foam{{"ro", 5e-8}, {"e1", .02}, {"n1", 4},  {"v2", .05},
+                              {"e2", .1},   {"n2", .2},  {"pr", .05}};
   TestParameters crushable{{"ro", 5e-8}, {"e", .01}, {"pr", .1}, {"tsc", .0005}, {"damp", .1}};
 
   Samples() {
     curved.set_curve("lcss", {{0, .3}, {.01, .36}, {.05, .42}, {.2, .5}, {1, .55}});
-    tabled.set_table("lcss", {{-7, {{0, .3}, {1, .4}}}, {0, {{0, .4}, {1, .5}}}, {4, {{0, .6}, {1, .7}}}}, true);
+    tabled.set_table(
+        "lcss", {{-7, {{0, .3}, {1, .4}}}, {0, {{0, .4}, {1, .5}}}, {4, {{0, .6}, {1, .7}}}}, true);
     ogden_viscous.add_row({{"gi", .3}, {"betai", .5}}).add_row({{"gi", .1}, {"betai", 20}});
     foam.set_curve("lcid", foam_points());
     foam_viscous.set_curve("lcid", foam_points());
     crushable.set_curve("lcid", {{0, .0002}, {.5, .0004}, {.8, .002}});
   }
-  static TestParameters::Points foam_points() { return {{0, 0}, {.1, .0001}, {.5, .0002}, {.8, .001}, {.95, .01}}; }
+  static TestParameters::Points foam_points() {
+    return {{0, 0}, {.1, .0001}, {.5, .0002}, {.8, .001}, {.95, .01}};
+  }
 
   // calls visit(law) for all of them
   template <class Visit>
@@ -129,7 +137,8 @@ struct Samples {
     visit(PiecewiseLinearPlasticity::from(plastic)), visit(PiecewiseLinearPlasticity::from(curved));
     visit(PiecewiseLinearPlasticity::from(tabled));
     visit(Viscoelastic::from(viscoelastic)), visit(KelvinMaxwell::from(kelvin));
-    visit(MooneyRivlin::from(mooney)), visit(Ogden::from(ogden)), visit(ViscousOgden::from(ogden_viscous));
+    visit(MooneyRivlin::from(mooney)), visit(Ogden::from(ogden)),
+        visit(ViscousOgden::from(ogden_viscous));
     visit(LowDensityFoam::from(foam)), visit(ViscousLowDensityFoam::from(foam_viscous));
     visit(ViscousFoam::from(viscous_foam)), visit(CrushableFoam::from(crushable));
   }

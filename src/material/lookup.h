@@ -1,12 +1,14 @@
 #pragma once
-// Curves and tables for constitutive laws: values and slopes for a whole lane without a branch on the data.
+// Curves and tables for constitutive laws: values and slopes for a whole lane without a branch on
+// the data.
 #include "base/curve.h"
 #include "base/lane_math.h"
 
 namespace fabrica {
 
-// Value of a piecewise linear curve at a and, in slope, dy/dx there; the end segments are continued unless the
-// curve says otherwise. Short curves are scanned by all lanes together, which beats a search per lane.
+// Value of a piecewise linear curve at a and, in slope, dy/dx there; the end segments are continued
+// unless the curve says otherwise. Short curves are scanned by all lanes together, which beats a
+// search per lane.
 template <class L>
 FABRICA_FN L lookup(const CurveView& curve, const L& a, L& slope) {
   if (curve.n > 64) return curve(a, slope);
@@ -29,8 +31,9 @@ FABRICA_FN L lookup(const CurveView& curve, const L& a, L& slope) {
   return y;
 }
 
-// Value of a curve at a >= 0, the slope there and, in area, the integral from 0; the first point stands at 0 (a curve
-// that starts later is read as if it began with its first segment). All lanes scan together.
+// Value of a curve at a >= 0, the slope there and, in area, the integral from 0; the first point
+// stands at 0 (a curve that starts later is read as if it began with its first segment). All lanes
+// scan together.
 template <class L>
 FABRICA_FN L lookup_with_area(const CurveView& curve, const L& a, L& slope, L& area) {
   if (curve.n == 1) return slope = L(0.0), area = L(curve.y[0]) * a, L(curve.y[0]);
@@ -51,7 +54,8 @@ FABRICA_FN L lookup_with_area(const CurveView& curve, const L& a, L& slope, L& a
   return y;
 }
 
-// Value of a table at abscissa a and rate r: linear in the rate (or its logarithm), constant outside.
+// Value of a table at abscissa a and rate r: linear in the rate (or its logarithm), constant
+// outside.
 template <class L>
 FABRICA_FN L lookup(const TableView& table, const L& a, const L& rate, L& slope) {
   const L r = table.log_rate ? log(max(rate, L(1e-30))) : rate;

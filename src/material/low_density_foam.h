@@ -1,14 +1,15 @@
 #pragma once
-// Low density urethane foam (*MAT_LOW_DENSITY_FOAM, 057): no coupling between the principal directions.
-//   sigma_i = tau_i / (lam_j lam_k)                                                                        (1)
-//   tau_i = -LCID(1 - lam_i) f   in compression,   f = 1 - (1 - HU) (1 - (W / Wmax)^SHAPE)                  (2)
-//   tau_i = min(E (lam_i - 1), TC)  in tension; FAIL = 1: no tension once TC has been reached
-//   W = sum over compressed directions of int LCID; Wmax <- max(W, Wmax e^(-BETA dt))
-//   sigma_v = DAMP rho c l D + h,  dh/dt = ED D - BETA1 h,  c = sqrt(E / rho)                                (3)
-// lam_i principal stretches, tau_i nominal stress, l length of the element, D rate of deformation from the
-// increment of ln(V), V = sqrt(F F^T). W is a function of the stretches, so one cycle with HU returns exactly
-// HU + (1 - HU) / (1 + SHAPE) of the work.
-// Source: LS-DYNA theory manual (public), MAT_057; Chang, Song, Sakai, SAE 1994.
+// Low density urethane foam (*MAT_LOW_DENSITY_FOAM, 057): no coupling between the principal
+// directions.
+//   sigma_i = tau_i / (lam_j lam_k) (1) tau_i = -LCID(1 - lam_i) f   in compression,   f = 1 - (1 -
+//   HU) (1 - (W / Wmax)^SHAPE)                  (2) tau_i = min(E (lam_i - 1), TC)  in tension;
+//   FAIL = 1: no tension once TC has been reached W = sum over compressed directions of int LCID;
+//   Wmax <- max(W, Wmax e^(-BETA dt)) sigma_v = DAMP rho c l D + h,  dh/dt = ED D - BETA1 h,  c =
+//   sqrt(E / rho)                                (3)
+// lam_i principal stretches, tau_i nominal stress, l length of the element, D rate of deformation
+// from the increment of ln(V), V = sqrt(F F^T). W is a function of the stretches, so one cycle with
+// HU returns exactly HU + (1 - HU) / (1 + SHAPE) of the work. Source: LS-DYNA theory manual
+// (public), MAT_057; Chang, Song, Sakai, SAE 1994.
 #include "base/eigen3.h"
 #include "material/lookup.h"
 #include "material/point.h"
@@ -24,14 +25,14 @@ struct LowDensityFoamOf {
   static constexpr bool total = true, can_fail = false;
   static constexpr int rotated = viscous ? 2 : 1;
 
-  Real density, youngs;    // E [stress]
-  CurveView curve;         // LCID: nominal stress over 1 - lam, compression positive
-  Real tension;            // TC [stress]
-  Real unloading, shape;   // HU, SHAPE [-]
-  Real recovery;           // BETA [1/time]
-  Real damping;            // DAMP [-]
-  bool tears;              // FAIL = 1
-  Real branch, fading;     // ED [stress], BETA1 [1/time]
+  Real density, youngs;   // E [stress]
+  CurveView curve;        // LCID: nominal stress over 1 - lam, compression positive
+  Real tension;           // TC [stress]
+  Real unloading, shape;  // HU, SHAPE [-]
+  Real recovery;          // BETA [1/time]
+  Real damping;           // DAMP [-]
+  bool tears;             // FAIL = 1
+  Real branch, fading;    // ED [stress], BETA1 [1/time]
 
   template <class L>
   struct Plain {
@@ -55,7 +56,8 @@ struct LowDensityFoamOf {
     m.curve = p.curve("lcid");
     m.curve.extrapolate = true;
     m.tension = p.real("tc") > 0 ? Real(p.real("tc")) : Real(1e20);
-    m.unloading = Real(p.real("hu")), m.shape = p.real("shape") > 0 ? Real(p.real("shape")) : Real(1);
+    m.unloading = Real(p.real("hu")),
+    m.shape = p.real("shape") > 0 ? Real(p.real("shape")) : Real(1);
     m.recovery = Real(p.real("beta")), m.damping = Real(p.real("damp"));
     m.tears = p.integer("fail") == 1;
     m.branch = Real(p.real("ed")), m.fading = Real(p.real("beta1"));
@@ -117,19 +119,25 @@ struct LowDensityFoamOf {
     L modulus = zero, most = zero;
     Vec3<L> principal;
     for (int i = 0; i < 3; ++i) {
-      const L local = select(e.value[i] < zero, fma(steeper * loading[i], loading[i], slope[i] * factor), L(youngs));
+      const L local = select(e.value[i] < zero,
+                             fma(steeper * loading[i], loading[i], slope[i] * factor), L(youngs));
       modulus = max(modulus, stretch[i] * stretch[i] * max(local, L(youngs)));
       most = max(most, stretch[i] * abs(tau[i]));
       principal[i] = per_volume * stretch[i] * tau[i];
     }
-    // shear between two axes: (t_i - t_j) / (lam_i^2 - lam_j^2) x the larger lam^2, t = lam tau
+    // shear between two axes: (t_i - t_j) / (lam_i^2 - lam_j^2) x the larger lam^2, t = lam tau; a
+    // wave along the bisector of two axes meets half of the axial stiffness and all of the shear
+    L shear = zero;
     for (int i = 0; i < 3; ++i) {
       const int j = (i + 1) % 3;
-      const L across = abs(stretch[i] * tau[i] - stretch[j] * tau[j]) / max(abs(e.value[i] - e.value[j]), L(1e-3));
-      modulus = max(modulus, across * (one + max(e.value[i], e.value[j])));
+      const L across = abs(stretch[i] * tau[i] - stretch[j] * tau[j]) /
+                       max(abs(e.value[i] - e.value[j]), L(1e-3));
+      shear = max(shear, across * (one + max(e.value[i], e.value[j])));
     }
+    modulus = max(modulus, fma(L(0.5), modulus, shear));
     const Sym3<L> viscous_part = viscous_stress(from_principal(logarithm, e.vector), point, state);
-    const L impedance = sqrt(L(youngs) * L(density)) / max(sqrt((modulus + most) * L(density)), L(1e-30));
+    const L impedance =
+        sqrt(L(youngs) * L(density)) / max(sqrt((modulus + most) * L(density)), L(1e-30));
     point.modulus = damped_modulus((modulus + most) * per_volume + L(viscous ? branch : Real(0)),
                                    L(damping) * impedance);
     return from_principal(principal, e.vector) + viscous_part;
@@ -146,7 +154,8 @@ struct LowDensityFoamOf {
  private:
   // equation (3)
   template <class L>
-  FABRICA_FN Sym3<L> viscous_stress(const Sym3<L>& strain, const Point<L>& point, State<L>& state) const {
+  FABRICA_FN Sym3<L> viscous_stress(const Sym3<L>& strain, const Point<L>& point,
+                                    State<L>& state) const {
     const Sym3<L> change = strain - state.strain;
     state.strain = strain;
     const L still = select(point.dt > L(0.0), L(1.0), L(0.0));

@@ -27,9 +27,10 @@ struct MaterialList {
   static constexpr int size = sizeof...(Laws);
 };
 
-using Materials = MaterialList<ElasticLaw, ElasticFluid, PlasticKinematic, Viscoelastic, Null,
-                               PiecewiseLinearPlasticity, MooneyRivlin, LowDensityFoam, ViscousLowDensityFoam,
-                               KelvinMaxwell, ViscousFoam, CrushableFoam, Ogden, ViscousOgden>;
+using Materials =
+    MaterialList<ElasticLaw, ElasticFluid, PlasticKinematic, Viscoelastic, Null,
+                 PiecewiseLinearPlasticity, MooneyRivlin, LowDensityFoam, ViscousLowDensityFoam,
+                 KelvinMaxwell, ViscousFoam, CrushableFoam, Ogden, ViscousOgden>;
 
 // carries a law's type through a generic lambda
 template <class M>
@@ -57,7 +58,8 @@ bool serves(std::string_view keyword, const Parameters& p) {
 }
 
 // The law read from its card; eos: the card of its equation of state, or none.
-// Throws std::invalid_argument with the keyword and the reason where the card asks for what the law cannot do.
+// Throws std::invalid_argument with the keyword and the reason where the card asks for what the law
+// cannot do.
 template <class M>
 M make_material(const Parameters& p, const Parameters* eos = nullptr) {
   if constexpr (requires { M::from(p, eos); })
@@ -66,10 +68,11 @@ M make_material(const Parameters& p, const Parameters* eos = nullptr) {
     return M::from(p);
 }
 
-// Calls visit(law) for the law of the keyword (canonical, e.g. "MAT_ELASTIC"); false when none of the families
-// has it.
+// Calls visit(law) for the law of the keyword (canonical, e.g. "MAT_ELASTIC"); false when none of
+// the families has it.
 template <unsigned families = in_solids | in_shells | in_beams, class Visit>
-bool with_material(std::string_view keyword, const Parameters& p, const Parameters* eos, Visit&& visit) {
+bool with_material(std::string_view keyword, const Parameters& p, const Parameters* eos,
+                   Visit&& visit) {
   bool found = false;
   for_each_material<families>(Materials{}, [&]<class M>(LawTag<M>) {
     if (!found && serves<M>(keyword, p)) {

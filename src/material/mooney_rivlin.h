@@ -1,8 +1,8 @@
 #pragma once
 // Mooney-Rivlin rubber (*MAT_MOONEY-RIVLIN_RUBBER, 027).
-//   W = A (I1 - 3) + B (I2 - 3) + C (I3^-2 - 1) + D (I3 - 1)^2                                             (1)
-//   C = A/2 + B,  D = (A (5 nu - 2) + B (11 nu - 5)) / (2 (1 - 2 nu)),  G = 2 (A + B)
-//   sigma = (1/J) (2A b + 2B (I1 b - b^2) + 2 I3 (-2C I3^-3 + 2D (I3 - 1)) I),  b = F F^T                  (2)
+//   W = A (I1 - 3) + B (I2 - 3) + C (I3^-2 - 1) + D (I3 - 1)^2 (1) C = A/2 + B,  D = (A (5 nu - 2)
+//   + B (11 nu - 5)) / (2 (1 - 2 nu)),  G = 2 (A + B) sigma = (1/J) (2A b + 2B (I1 b - b^2) + 2 I3
+//   (-2C I3^-3 + 2D (I3 - 1)) I),  b = F F^T                  (2)
 // evaluated with c = b - I, so that small strains do not cancel. I3 = J^2.
 // A uniaxial test (LCID, specimen SGL, SW, ST) is fitted by least squares of nominal stress:
 //   P = 2 (lam - lam^-2) (A + B / lam).
@@ -46,7 +46,8 @@ struct MooneyRivlin {
     const Sym3<L> s = deviator(linear * c - L(2 * B) * cc);
     // mean stress; the constants cancel because 2A + 4B = 4C
     const L second = L(0.5) * (t * t - trace(cc));
-    const L shear_part = fma(L(Real(2.0 / 3.0) * A), t, L(Real(4.0 / 3.0) * B) * fma(L(2.0), t, second));
+    const L shear_part =
+        fma(L(Real(2.0 / 3.0) * A), t, L(Real(4.0 / 3.0) * B) * fma(L(2.0), t, second));
     const L volume_part = w * fma(L(4 * D), I3, L(4 * C) * (L(2.0) + w) / (I3 * I3));
     tangent(c, point);
     return per_volume * plus_sphere(s, shear_part + volume_part);
@@ -58,7 +59,8 @@ struct MooneyRivlin {
     const Sym3<L> c = strain_of(F);
     const L t = trace(c), w = (J - L(1.0)) * (J + L(1.0)), I3 = L(1.0) + w;
     const L second = L(0.5) * (t * t - trace(square(c)));
-    return L(A) * t + L(B) * fma(L(2.0), t, second) - L(C) * w * (L(2.0) + w) / (I3 * I3) + L(D) * w * w;
+    return L(A) * t + L(B) * fma(L(2.0), t, second) - L(C) * w * (L(2.0) + w) / (I3 * I3) +
+           L(D) * w * w;
   }
 
  private:
@@ -69,7 +71,8 @@ struct MooneyRivlin {
     for (int i = 0; i < 3; ++i) H.a[i][i] = H.a[i][i] - L(1.0);
     return L(2.0) * sym(H) + left_cauchy_green(H);
   }
-  // Bounds of the acoustic tensor: 2A n.b.n + 2B |d cof F|^2 for shear, and J U'' with U the part of J.
+  // Bounds of the acoustic tensor: 2A n.b.n + 2B |d cof F|^2 for shear, and J U'' with U the part
+  // of J.
   template <class L>
   FABRICA_FN void tangent(const Sym3<L>& c, Point<L>& point) const {
     const L J = point.volume_ratio, e = L(1.0) + sqrt(ddot(c, c));
@@ -93,7 +96,8 @@ struct MooneyRivlin {
     }
     const double determinant = aa * bb - ab * ab;
     if (!(determinant > 1e-12 * aa * bb))
-      throw std::invalid_argument("MAT_MOONEY-RIVLIN_RUBBER: curve LCID does not determine A and B");
+      throw std::invalid_argument(
+          "MAT_MOONEY-RIVLIN_RUBBER: curve LCID does not determine A and B");
     A = (ap * bb - bp * ab) / determinant, B = (aa * bp - ab * ap) / determinant;
   }
 };

@@ -44,17 +44,21 @@ TEST_CASE("009: cubic compression, cut-off in tension, viscosity, failure") {
   const Sym3<double> s = m.stress(no_stress(), Sym3<double>{0, 0, 0, .01, 0, 0}, point, state);
   CHECK(near(s.xy, 2 * 1e-3 * .01 / .5, 1e-6));
   CHECK(point.alive == 0);
-  CHECK(Null::from(material).stress(no_stress(), Sym3<double>{1, 0, 0, 0, 0, 0}, point, state).xx == 0);
+  CHECK(Null::from(material).stress(no_stress(), Sym3<double>{1, 0, 0, 0, 0, 0}, point, state).xx ==
+        0);
 }
 
 TEST_CASE("elastic fluid: pressure, cavitation limit, viscosity") {
-  const auto m = ElasticFluid::from(TestParameters{{"ro", 1e-6}, {"k", 2.2}, {"vc", .1}, {"cp", .001}});
+  const auto m =
+      ElasticFluid::from(TestParameters{{"ro", 1e-6}, {"k", 2.2}, {"vc", .1}, {"cp", .001}});
   auto state = fresh_state<ElasticFluid>();
   auto point = fresh_point(m, 2, 1, 5);
-  const Sym3<double> squeezed = m.stress(no_stress(), Sym3<double>{-.01, 0, 0, .02, 0, 0}, point, state);
+  const Sym3<double> squeezed =
+      m.stress(no_stress(), Sym3<double>{-.01, 0, 0, .02, 0, 0}, point, state);
   CHECK(near(trace(squeezed) / 3, -.022, 1e-6));
   CHECK(near(squeezed.xy, .1 * 5 * std::sqrt(2.2 * 1e-6) * .02 / 2, 1e-6));
-  CHECK(near(trace(m.stress(no_stress(), Sym3<double>{.01, 0, 0, 0, 0, 0}, point, state)) / 3, .001, 1e-6));
+  CHECK(near(trace(m.stress(no_stress(), Sym3<double>{.01, 0, 0, 0, 0, 0}, point, state)) / 3, .001,
+             1e-6));
 }
 
 }  // namespace

@@ -1,10 +1,12 @@
 #pragma once
 // Ogden rubber with optional viscoelasticity (*MAT_OGDEN_RUBBER, 077_O).
-//   tau_i = sum_j mu_j (lam*_i^alpha_j - 1/3 sum_k lam*_k^alpha_j) + K (J - 1),  lam* = lam J^(-1/3)         (1)
-//   sigma = (1/J) sum_i tau_i n_i n_i,   G = 1/2 sum mu_j alpha_j,   K = 2 G (1 + nu) / (3 (1 - 2 nu))
-//   sigma_v = (1/J) F S F^T,  S = sum_i h_i,  h_i driven by 2 G_i dev(dE) and fading with beta_i              (2)
-// lam_i, n_i principal stretches and axes of b = F F^T, E Green strain. Evaluated with ln(lam) and e^x - 1, so that
-// small strains do not cancel. Source: Ogden 1972; LS-DYNA theory manual (public), MAT_077.
+//   tau_i = sum_j mu_j (lam*_i^alpha_j - 1/3 sum_k lam*_k^alpha_j) + K (J - 1),  lam* = lam
+//   J^(-1/3)         (1) sigma = (1/J) sum_i tau_i n_i n_i,   G = 1/2 sum mu_j alpha_j,   K = 2 G
+//   (1 + nu) / (3 (1 - 2 nu)) sigma_v = (1/J) F S F^T,  S = sum_i h_i,  h_i driven by 2 G_i dev(dE)
+//   and fading with beta_i              (2)
+// lam_i, n_i principal stretches and axes of b = F F^T, E Green strain. Evaluated with ln(lam) and
+// e^x - 1, so that small strains do not cancel. Source: Ogden 1972; LS-DYNA theory manual (public),
+// MAT_077.
 #include <stdexcept>
 #include <string>
 
@@ -26,8 +28,9 @@ struct OgdenOf {
 
   Real density = 0, bulk = 0, shear = 0;
   int terms = 0, branches = 0;
-  Real mu[ogden_terms] = {}, alpha[ogden_terms] = {};          // [stress], [-]
-  Real branch_shear[ogden_branches] = {}, decay[ogden_branches] = {};  // G_i [stress], beta_i [1/time]
+  Real mu[ogden_terms] = {}, alpha[ogden_terms] = {};  // [stress], [-]
+  Real branch_shear[ogden_branches] = {},
+       decay[ogden_branches] = {};  // G_i [stress], beta_i [1/time]
 
   template <class L>
   struct Branches {
@@ -79,7 +82,8 @@ struct OgdenOf {
   FABRICA_FN L energy(const Mat3<L>& F, const L& J) const {
     Mat3<L> H = F;
     for (int i = 0; i < 3; ++i) H.a[i][i] = H.a[i][i] - L(1.0);
-    const Vec3<L> l = isochoric_logarithm(eigen_symmetric(L(2.0) * sym(H) + left_cauchy_green(H)).value);
+    const Vec3<L> l =
+        isochoric_logarithm(eigen_symmetric(L(2.0) * sym(H) + left_cauchy_green(H)).value);
     L W = L(bulk) * (J - L(1.0) - log1p(J - L(1.0)));
     for (int j = 0; j < terms; ++j)
       for (int i = 0; i < 3; ++i) W = fma(L(mu[j] / alpha[j]), expm1(L(alpha[j]) * l[i]), W);
@@ -96,7 +100,8 @@ struct OgdenOf {
     return l;
   }
   template <class L>
-  FABRICA_FN void tangent(const Vec3<L>& rise, const Vec3<L>& tau, const Vec3<L>& c, Point<L>& point) const {
+  FABRICA_FN void tangent(const Vec3<L>& rise, const Vec3<L>& tau, const Vec3<L>& c,
+                          Point<L>& point) const {
     const L J = point.volume_ratio;
     const L lowest = min(min(tau.x, tau.y), tau.z);
     L steepest = L(0.0), widest = L(1.0), most = L(0.0);
@@ -137,11 +142,13 @@ struct OgdenOf {
 template <bool viscous>
 OgdenOf<viscous> OgdenOf<viscous>::from(const Parameters& p) {
   if (p.real("n") > 0)
-    throw std::invalid_argument("MAT_OGDEN_RUBBER: fitting a test curve (N > 0) is not supported; give MU and ALPHA");
+    throw std::invalid_argument(
+        "MAT_OGDEN_RUBBER: fitting a test curve (N > 0) is not supported; give MU and ALPHA");
   if (p.real("g") > 0)
     throw std::invalid_argument("MAT_OGDEN_RUBBER: frictional damping (G, SIGF) is not supported");
   if (p.rows() > ogden_branches)
-    throw std::invalid_argument("MAT_OGDEN_RUBBER: more than 6 viscoelastic terms are not supported");
+    throw std::invalid_argument(
+        "MAT_OGDEN_RUBBER: more than 6 viscoelastic terms are not supported");
   OgdenOf m;
   m.density = Real(p.real("ro"));
   double G = 0;
@@ -152,7 +159,8 @@ OgdenOf<viscous> OgdenOf<viscous>::from(const Parameters& p) {
     ++m.terms;
     G += mu * alpha / 2;
   }
-  if (!(G > 0)) throw std::invalid_argument("MAT_OGDEN_RUBBER: the initial shear modulus is not positive");
+  if (!(G > 0))
+    throw std::invalid_argument("MAT_OGDEN_RUBBER: the initial shear modulus is not positive");
   const double nu = p.real("pr");
   m.shear = Real(G), m.bulk = Real(2 * G * (1 + nu) / (3 * (1 - 2 * nu)));
   m.branches = p.rows();

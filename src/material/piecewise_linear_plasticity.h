@@ -1,9 +1,9 @@
 #pragma once
 // Von Mises plasticity with an arbitrary hardening curve and rate effects
 // (*MAT_PIECEWISE_LINEAR_PLASTICITY, 024).
-//   Y = S(ep) f(r)            f = 1 + (r/C)^(1/P), or the curve LCSR                                        (1)
-//   Y = S(ep) + S0 (r/C)^(1/P)  with VP = 1; S0 = SIGY, or S(0) where SIGY is blank                         (2)
-//   Y = table(ep, r)          where LCSS is a table                                                        (3)
+//   Y = S(ep) f(r)            f = 1 + (r/C)^(1/P), or the curve LCSR (1) Y = S(ep) + S0 (r/C)^(1/P)
+//   with VP = 1; S0 = SIGY, or S(0) where SIGY is blank                         (2) Y = table(ep,
+//   r)          where LCSS is a table                                                        (3)
 // S: curve LCSS, or points EPS/ES, or SIGY + Ep ep with Ep = E ETAN / (E - ETAN).
 // r: VP = 0: sqrt(D:D); VP = -1: effective deviatoric rate sqrt(2/3 D':D'); VP = 1: rate of ep.
 // A point fails where ep > FAIL. Return mapping: j2.h.
@@ -19,17 +19,17 @@ struct PiecewiseLinearPlasticity {
   static constexpr int rotated = 0;
 
   Real density = 0;
-  J2Moduli moduli{};         // K, G [stress]
-  Real yield_stress = 0;     // SIGY [stress]
-  Real hardening = 0;        // Ep [stress]
-  Real failure_strain = 0;   // FAIL; 0: none
-  Real rate_constant = 0;    // C [1/time]; 0: none
-  Real rate_exponent = 0;    // 1 / P
-  int rate_form = 0;         // VP
-  CurveView curve;           // LCSS
-  TableView table;           // LCSS as a table
-  CurveView rate_curve;      // LCSR
-  int points = 0;            // EPS/ES pairs in use
+  J2Moduli moduli{};        // K, G [stress]
+  Real yield_stress = 0;    // SIGY [stress]
+  Real hardening = 0;       // Ep [stress]
+  Real failure_strain = 0;  // FAIL; 0: none
+  Real rate_constant = 0;   // C [1/time]; 0: none
+  Real rate_exponent = 0;   // 1 / P
+  int rate_form = 0;        // VP
+  CurveView curve;          // LCSS
+  TableView table;          // LCSS as a table
+  CurveView rate_curve;     // LCSR
+  int points = 0;           // EPS/ES pairs in use
   Real strain_points[8] = {}, stress_points[8] = {};
 
   template <class L>
@@ -41,7 +41,8 @@ struct PiecewiseLinearPlasticity {
   Elastic elastic() const { return {density, moduli.bulk, moduli.shear}; }
 
   template <class L>
-  FABRICA_FN Sym3<L> stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point, State<L>& state) const {
+  FABRICA_FN Sym3<L> stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point,
+                            State<L>& state) const {
     const J2Trial<L> trial = j2_trial(moduli, old, strain, no_back<L>());
     const L lambda = flow<false>(trial, strain, point, state);
     L increment;
@@ -51,23 +52,25 @@ struct PiecewiseLinearPlasticity {
   }
 
   template <class L>
-  FABRICA_FN Sym3<L> plane_stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point, State<L>& state,
-                                  L& dzz) const {
-    const J2Trial<L> trial =
-        j2_plane_trial(moduli, old, strain, no_back<L>());
+  FABRICA_FN Sym3<L> plane_stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point,
+                                  State<L>& state, L& dzz) const {
+    const J2Trial<L> trial = j2_plane_trial(moduli, old, strain, no_back<L>());
     const L lambda = flow<true>(trial, plane_flow_strain(strain), point, state);
     L increment;
-    const Sym3<L> s = j2_plane_finish(moduli, old, trial, lambda, static_cast<Sym3<L>*>(nullptr), increment, dzz);
+    const Sym3<L> s =
+        j2_plane_finish(moduli, old, trial, lambda, static_cast<Sym3<L>*>(nullptr), increment, dzz);
     finish_point(increment, point, state);
     return s;
   }
 
   template <class L>
-  FABRICA_FN Sym3<L> uniaxial(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point, State<L>& state) const {
+  FABRICA_FN Sym3<L> uniaxial(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point,
+                              State<L>& state) const {
     const J2Trial<L> trial = j2_fibre_trial(moduli, old, strain, no_back<L>());
     const L lambda = flow<true>(trial, fibre_flow_strain(strain), point, state);
     L increment;
-    const Sym3<L> s = j2_fibre_finish(moduli, trial, lambda, static_cast<Sym3<L>*>(nullptr), increment);
+    const Sym3<L> s =
+        j2_fibre_finish(moduli, trial, lambda, static_cast<Sym3<L>*>(nullptr), increment);
     finish_point(increment, point, state);
     return s;
   }
@@ -118,8 +121,8 @@ struct PiecewiseLinearPlasticity {
     const L ep = state.plastic_strain;
     if (!rate_dependent()) {
       if (!curve && points == 0) return bilinear_flow<plane>(trial, ep);
-      return j2_newton<plane, 3>(trial.modes,
-                                 [&](const L& dep, L& slope) { return static_yield(ep + dep, slope); });
+      return j2_newton<plane, 3>(
+          trial.modes, [&](const L& dep, L& slope) { return static_yield(ep + dep, slope); });
     }
     const L per_time = L(1.0) / max(point.dt, L(1e-30));
     if (rate_form == 1) {
@@ -132,8 +135,8 @@ struct PiecewiseLinearPlasticity {
     const L weight = rate_form == -1 ? L(2.0 / 3.0) : L(1.0);
     const L r = sqrt(weight * ddot(measured, measured)) * per_time;
     const L factor = table ? L(1.0) : rate_factor(r);
-    return j2_newton<plane, 4>(trial.modes,
-                               [&](const L& dep, L& slope) { return yield(ep + dep, r, factor, slope); });
+    return j2_newton<plane, 4>(
+        trial.modes, [&](const L& dep, L& slope) { return yield(ep + dep, r, factor, slope); });
   }
   template <bool plane, class L>
   FABRICA_FN L bilinear_flow(const J2Trial<L>& trial, const L& ep) const {

@@ -11,11 +11,13 @@ TEST_CASE("shells: elasticity is exact, by the law's own form and by the adaptor
   auto state = fresh_state<ElasticLaw>();
   auto point = fresh_point(m, 1);
   double dzz = 0;
-  const Sym3<double> s = plane_stress(m, no_stress(), .001, -.0004, .0006, .0002, .0008, 0.5, point, state, dzz);
+  const Sym3<double> s =
+      plane_stress(m, no_stress(), .001, -.0004, .0006, .0002, .0008, 0.5, point, state, dzz);
   Sym3<double> e{.001, -.0004, 0, .0003, .00005, .0002};
   const Sym3<double> general = detail::free_thickness<4>(m, no_stress(), e, point, state);
   const double c = 210 / (1 - 0.09), G = 210 / 2.6, tolerance = sizeof(Real) == 8 ? 1e-12 : 1e-6;
-  const Sym3<double> exact{c * (.001 - .3 * .0004), c * (-.0004 + .3 * .001), 0, .0006 * G, .0001 * G, .0004 * G};
+  const Sym3<double> exact{
+      c * (.001 - .3 * .0004), c * (-.0004 + .3 * .001), 0, .0006 * G, .0001 * G, .0004 * G};
   for (int i = 0; i < 6; ++i) {
     CHECK(std::abs(s[i] - exact[i]) < tolerance * 0.3);
     CHECK(std::abs(general[i] - exact[i]) < tolerance * 0.3);
@@ -25,7 +27,8 @@ TEST_CASE("shells: elasticity is exact, by the law's own form and by the adaptor
   CHECK(near(e.zz, -.3 / .7 * .0006, tolerance));
 }
 
-// The closed plane stress form and the three-dimensional law with free thickness give the same step.
+// The closed plane stress form and the three-dimensional law with free thickness give the same
+// step.
 template <class M>
 void check_shell_is_solid(const M& m, double size, double dt) {
   std::mt19937 random(8);
@@ -35,7 +38,8 @@ void check_shell_is_solid(const M& m, double size, double dt) {
   double worst = 0, worst_dzz = 0;
   for (int i = 0; i < 300; ++i) {
     auto point = fresh_point(m, dt);
-    Sym3<double> e{uniform(random), uniform(random), 0, uniform(random), uniform(random), uniform(random)};
+    Sym3<double> e{uniform(random), uniform(random), 0,
+                   uniform(random), uniform(random), uniform(random)};
     double dzz = 0;
     a = plane_stress(m, a, e.xx, e.yy, 2 * e.xy, 2 * e.yz, 2 * e.zx, 1.0, point, shell, dzz);
     b = detail::free_thickness<30>(m, b, e, point, solid);
@@ -43,7 +47,8 @@ void check_shell_is_solid(const M& m, double size, double dt) {
     worst = std::max(worst, largest(a - b));
     worst_dzz = std::max(worst_dzz, std::abs(dzz - e.zz));
   }
-  // the solid's rates differ where the yield stress does not matter; J2 without rates agrees to its convergence
+  // the solid's rates differ where the yield stress does not matter; J2 without rates agrees to its
+  // convergence
   CHECK(worst < 1e-5 * 0.3);
   CHECK(worst_dzz < 1e-5 * size);
 }
@@ -60,15 +65,17 @@ TEST_CASE("shells: the plastic step equals the solid's with free thickness") {
 
 // after a step far beyond yield the stress lies on the yield surface
 TEST_CASE("shells: large steps end on the yield surface") {
-  const auto m = PiecewiseLinearPlasticity::from(TestParameters{{"ro", 1}, {"e", 210}, {"pr", .3}, {"sigy", .3}});
+  const auto m = PiecewiseLinearPlasticity::from(
+      TestParameters{{"ro", 1}, {"e", 210}, {"pr", .3}, {"sigy", .3}});
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(-.05, .05);
   for (int i = 0; i < 1000; ++i) {
     auto state = fresh_state<PiecewiseLinearPlasticity>();
     auto point = fresh_point(m, 1);
     double dzz = 0;
-    const Sym3<double> s = plane_stress(m, no_stress(), uniform(random), uniform(random), uniform(random),
-                                        uniform(random), uniform(random), 1.0, point, state, dzz);
+    const Sym3<double> s =
+        plane_stress(m, no_stress(), uniform(random), uniform(random), uniform(random),
+                     uniform(random), uniform(random), 1.0, point, state, dzz);
     CHECK(near(von_mises_of_deviator(deviator(s)), 0.3, 1e-5));
   }
 }

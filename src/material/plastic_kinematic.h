@@ -1,10 +1,11 @@
 #pragma once
-// Von Mises plasticity with isotropic, kinematic or mixed linear hardening (*MAT_PLASTIC_KINEMATIC, 003).
-//   Y  = (1 + (r/C)^(1/P)) (SIGY + BETA Ep ep),   Ep = E ETAN / (E - ETAN)                                  (1)
-//   da = 2/3 (1 - BETA) Ep d(plastic strain)                                                               (2)
-// r: rate of deformation sqrt(D:D) (VP = 0). VP = 1: Y = SIGY + BETA Ep ep + SIGY (r/C)^(1/P), r the rate of ep.
-// C = SRC, P = SRP; C = 0: no rate effect. A point fails where ep > FS. Return mapping: j2.h.
-// Source: Krieg and Key 1976; Cowper and Symonds 1957.
+// Von Mises plasticity with isotropic, kinematic or mixed linear hardening (*MAT_PLASTIC_KINEMATIC,
+// 003).
+//   Y  = (1 + (r/C)^(1/P)) (SIGY + BETA Ep ep),   Ep = E ETAN / (E - ETAN) (1) da = 2/3 (1 - BETA)
+//   Ep d(plastic strain)                                                               (2)
+// r: rate of deformation sqrt(D:D) (VP = 0). VP = 1: Y = SIGY + BETA Ep ep + SIGY (r/C)^(1/P), r
+// the rate of ep. C = SRC, P = SRP; C = 0: no rate effect. A point fails where ep > FS. Return
+// mapping: j2.h. Source: Krieg and Key 1976; Cowper and Symonds 1957.
 #include "material/j2.h"
 
 namespace fabrica {
@@ -16,13 +17,13 @@ struct PlasticKinematic {
   static constexpr int rotated = 1;
 
   Real density;
-  J2Moduli moduli;           // K, G, (1 - BETA) Ep [stress]
-  Real yield_stress;         // SIGY [stress]
-  Real isotropic;            // BETA Ep [stress]
-  Real rate_constant;        // C [1/time]; 0: none
-  Real rate_exponent;        // 1 / P
-  Real failure_strain;       // FS; 0: none
-  bool viscoplastic;         // VP = 1
+  J2Moduli moduli;      // K, G, (1 - BETA) Ep [stress]
+  Real yield_stress;    // SIGY [stress]
+  Real isotropic;       // BETA Ep [stress]
+  Real rate_constant;   // C [1/time]; 0: none
+  Real rate_exponent;   // 1 / P
+  Real failure_strain;  // FS; 0: none
+  bool viscoplastic;    // VP = 1
 
   template <class L>
   struct State {
@@ -47,7 +48,8 @@ struct PlasticKinematic {
   Elastic elastic() const { return {density, moduli.bulk, moduli.shear}; }
 
   template <class L>
-  FABRICA_FN Sym3<L> stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point, State<L>& state) const {
+  FABRICA_FN Sym3<L> stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point,
+                            State<L>& state) const {
     const J2Trial<L> trial = j2_trial(moduli, old, strain, state.back);
     const L lambda = flow<false>(trial, strain, point, state);
     L increment;
@@ -57,8 +59,8 @@ struct PlasticKinematic {
   }
 
   template <class L>
-  FABRICA_FN Sym3<L> plane_stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point, State<L>& state,
-                                  L& dzz) const {
+  FABRICA_FN Sym3<L> plane_stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point,
+                                  State<L>& state, L& dzz) const {
     const J2Trial<L> trial = j2_plane_trial(moduli, old, strain, state.back);
     const L lambda = flow<true>(trial, plane_flow_strain(strain), point, state);
     L increment;
@@ -68,7 +70,8 @@ struct PlasticKinematic {
   }
 
   template <class L>
-  FABRICA_FN Sym3<L> uniaxial(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point, State<L>& state) const {
+  FABRICA_FN Sym3<L> uniaxial(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point,
+                              State<L>& state) const {
     const J2Trial<L> trial = j2_fibre_trial(moduli, old, strain, state.back);
     const L lambda = flow<true>(trial, fibre_flow_strain(strain), point, state);
     L increment;

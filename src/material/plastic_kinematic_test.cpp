@@ -3,15 +3,16 @@
 namespace fabrica {
 namespace {
 
-// Uniaxial stress over a strain path in `steps` equal parts; the sides are found by the adaptor, from the law's own
-// fibre form (own = true) or from its three-dimensional form.
+// Uniaxial stress over a strain path in `steps` equal parts; the sides are found by the adaptor,
+// from the law's own fibre form (own = true) or from its three-dimensional form.
 template <class M>
-double pull(const M& m, typename M::template State<double>& state, Sym3<double>& s, double strain, double dt,
-            int steps, bool own) {
+double pull(const M& m, typename M::template State<double>& state, Sym3<double>& s, double strain,
+            double dt, int steps, bool own) {
   for (int i = 0; i < steps; ++i) {
     auto point = fresh_point(m, dt);
     Sym3<double> e{strain / steps, 0, 0, 0, 0, 0};
-    s = own ? uniaxial(m, s, e.xx, 0.0, 0.0, 1.0, point, state) : detail::free_sides<12>(m, s, e, point, state);
+    s = own ? uniaxial(m, s, e.xx, 0.0, 0.0, 1.0, point, state)
+            : detail::free_sides<12>(m, s, e, point, state);
   }
   return s.xx;
 }
@@ -22,7 +23,8 @@ TestParameters steel(double beta) {
 
 const double tolerance = sizeof(Real) == 8 ? 1e-8 : 2e-6;
 
-// sigma = SIGY + ETAN (eps - SIGY / E); reversed, the yield range is 2 SIGY (kinematic) or 2 sigma (isotropic)
+// sigma = SIGY + ETAN (eps - SIGY / E); reversed, the yield range is 2 SIGY (kinematic) or 2 sigma
+// (isotropic)
 template <class M>
 void check_cycle(double beta, double reversed) {
   for (const bool own : {true, false})
@@ -41,7 +43,8 @@ TEST_CASE("003 and 024: uniaxial bilinear hardening and the reversed yield point
   check_cycle<PiecewiseLinearPlasticity>(0, -0.318 - 2.1 * (0.01 - 0.636 / 210));
 }
 
-// perfectly plastic flow at a steady rate: sigma = SIGY (1 + (r/C)^(1/P)), r = 100/s, C = 40/s, P = 5: 2.20112
+// perfectly plastic flow at a steady rate: sigma = SIGY (1 + (r/C)^(1/P)), r = 100/s, C = 40/s, P =
+// 5: 2.20112
 template <class M>
 void check_rate(TestParameters p, double axial_rate) {
   for (const bool own : {true, false}) {
@@ -67,7 +70,8 @@ TEST_CASE("003 and 024: Cowper-Symonds") {
   check_rate<PlasticKinematic>(total, 100 / std::sqrt(1.5));
   check_rate<PiecewiseLinearPlasticity>(total, 100 / std::sqrt(1.5));
   // VP = -1: the effective deviatoric rate is the axial rate
-  const TestParameters deviatoric{{"ro", 7.8e-6}, {"e", 210}, {"pr", .3}, {"sigy", .3}, {"vp", -1}, {"c", 40}, {"p", 5}};
+  const TestParameters deviatoric{{"ro", 7.8e-6}, {"e", 210}, {"pr", .3}, {"sigy", .3},
+                                  {"vp", -1},     {"c", 40},  {"p", 5}};
   check_rate<PiecewiseLinearPlasticity>(deviatoric, 100);
 }
 
@@ -83,8 +87,9 @@ TEST_CASE("024: yield stress from a curve, from points, from a table and with a 
   const double ep = (0.03 - 0.345 / 210) / (1 + 1.5 / 210);
   TestParameters curve{{"ro", 7.8e-6}, {"e", 210}, {"pr", .3}};
   curve.set_curve("lcss", {{0, .3}, {.01, .36}, {.05, .42}, {.2, .5}});
-  TestParameters points{{"ro", 7.8e-6}, {"e", 210}, {"pr", .3},   {"eps1", 0},  {"es1", .3}, {"eps2", .01},
-                        {"es2", .36},   {"eps3", .05}, {"es3", .42}, {"eps4", .2}, {"es4", .5}};
+  TestParameters points{{"ro", 7.8e-6}, {"e", 210},    {"pr", .3},   {"eps1", 0},
+                        {"es1", .3},    {"eps2", .01}, {"es2", .36}, {"eps3", .05},
+                        {"es3", .42},   {"eps4", .2},  {"es4", .5}};
   for (const auto& p : {curve, points}) {
     const auto [sigma, plastic] = flow_stress(p, 0.03, 1);
     CHECK(near(sigma, 0.36 + 1.5 * (ep - 0.01), tolerance));
@@ -92,7 +97,8 @@ TEST_CASE("024: yield stress from a curve, from points, from a table and with a 
   }
   // a table of constants at rates 1 and 100, logarithmic: the mean at 10
   TestParameters table{{"ro", 7.8e-6}, {"e", 210}, {"pr", .3}, {"vp", 1}};
-  table.set_table("lcss", {{std::log(1.0), {{0, .3}, {1, .3}}}, {std::log(100.0), {{0, .5}, {1, .5}}}}, true);
+  table.set_table(
+      "lcss", {{std::log(1.0), {{0, .3}, {1, .3}}}, {std::log(100.0), {{0, .5}, {1, .5}}}}, true);
   CHECK(near(flow_stress(table, 0.02, 0.02 / 200 / 10).first, 0.4, tolerance));
   TestParameters factor{{"ro", 7.8e-6}, {"e", 210}, {"pr", .3}, {"sigy", .3}, {"vp", 1}};
   factor.set_curve("lcsr", {{0, 1}, {20, 2}});
@@ -100,7 +106,8 @@ TEST_CASE("024: yield stress from a curve, from points, from a table and with a 
 }
 
 TEST_CASE("003 and 024: a point fails where its plastic strain passes the limit") {
-  const TestParameters p{{"ro", 7.8e-6}, {"e", 210}, {"pr", .3}, {"sigy", .3}, {"fs", .01}, {"fail", .01}};
+  const TestParameters p{{"ro", 7.8e-6}, {"e", 210},  {"pr", .3},
+                         {"sigy", .3},   {"fs", .01}, {"fail", .01}};
   auto check = [&](const auto& m) {
     using M = std::decay_t<decltype(m)>;
     auto state = fresh_state<M>();

@@ -3,17 +3,19 @@
 namespace fabrica {
 namespace {
 
-// A = .4, B = .1, nu = .495; reference: solution of the compressible uniaxial problem, 3.13869 (J = 1.00349), 1.4726,
-// -2.0868; tolerances: half a unit of the last digit given
+// A = .4, B = .1, nu = .495; reference: solution of the compressible uniaxial problem, 3.13869 (J
+// = 1.00349), 1.4726, -2.0868; tolerances: half a unit of the last digit given
 TEST_CASE("027: uniaxial tension and compression") {
-  const auto m = MooneyRivlin::from(TestParameters{{"ro", 1e-6}, {"a", .4}, {"b", .1}, {"pr", .495}});
+  const auto m =
+      MooneyRivlin::from(TestParameters{{"ro", 1e-6}, {"a", .4}, {"b", .1}, {"pr", .495}});
   double lateral = 0;
   CHECK(near(free_uniaxial(m, 2, lateral), 3.13869, 2e-6));
   CHECK(near(2 * lateral * lateral, 1.00349, 3e-6));
   CHECK(near(free_uniaxial(m, 1.5, lateral), 1.4726, 4e-5));
   CHECK(near(free_uniaxial(m, 0.5, lateral), -2.0868, 4e-5));
   // towards incompressibility: 2 (lam^2 - 1/lam) (A + B/lam) = 3.150
-  const auto stiff = MooneyRivlin::from(TestParameters{{"ro", 1e-6}, {"a", .4}, {"b", .1}, {"pr", .49999}});
+  const auto stiff =
+      MooneyRivlin::from(TestParameters{{"ro", 1e-6}, {"a", .4}, {"b", .1}, {"pr", .49999}});
   CHECK(near(free_uniaxial(stiff, 2, lateral), 3.150, 2e-5));
 }
 
@@ -28,17 +30,25 @@ TEST_CASE("027: the constants are recovered from a curve they made") {
   CHECK(near(m.B, 0.1, 1e-5));
 }
 
-// mu = .63, .0012, -.01, alpha = 1.3, 5, -2: nominal stress sum mu (lam^(a-1) - lam^(-a/2-1)) of the incompressible rubber
+// mu = .63, .0012, -.01, alpha = 1.3, 5, -2: nominal stress sum mu (lam^(a-1) - lam^(-a/2-1)) of
+// the incompressible rubber
 TEST_CASE("077: uniaxial nominal stress") {
-  const auto m = Ogden::from(TestParameters{{"ro", 1e-6},  {"pr", .49999}, {"mu1", .63},   {"mu2", .0012},
-                                            {"mu3", -.01}, {"alpha1", 1.3}, {"alpha2", 5}, {"alpha3", -2}});
+  const auto m = Ogden::from(TestParameters{{"ro", 1e-6},
+                                            {"pr", .49999},
+                                            {"mu1", .63},
+                                            {"mu2", .0012},
+                                            {"mu3", -.01},
+                                            {"alpha1", 1.3},
+                                            {"alpha2", 5},
+                                            {"alpha3", -2}});
   const double reference[3] = {.401617, .602722, 1.207971}, stretch[3] = {1.5, 2, 4};
   for (int i = 0; i < 3; ++i) {
     double lateral = 0;
     const double sigma = free_uniaxial(m, stretch[i], lateral);
     CHECK(near(sigma * lateral * lateral, reference[i], 1e-3));
     // the deviatoric difference does not depend on K: tau_1 - tau_2 at isochoric stretches
-    const Sym3<double> s = total_stress(m, diagonal(stretch[i], 1 / std::sqrt(stretch[i]), 1 / std::sqrt(stretch[i])));
+    const Sym3<double> s =
+        total_stress(m, diagonal(stretch[i], 1 / std::sqrt(stretch[i]), 1 / std::sqrt(stretch[i])));
     CHECK(near((s.xx - s.yy) / stretch[i], reference[i], 2e-6));
   }
 }
@@ -48,7 +58,8 @@ TEST_CASE("077: a curve fit is refused in clear words") {
   CHECK_THROWS_AS(Ogden::from(p), std::invalid_argument);
 }
 
-// A held simple shear: the extra stress fades as sum G_i e^(-beta_i t) x its value after a fast step.
+// A held simple shear: the extra stress fades as sum G_i e^(-beta_i t) x its value after a fast
+// step.
 TEST_CASE("077: viscous branches fade with their own rates") {
   TestParameters p{{"ro", 1e-6}, {"pr", .49}, {"mu1", 1}, {"alpha1", 2}};
   p.add_row({{"gi", .3}, {"betai", .5}}).add_row({{"gi", .1}, {"betai", 2}});

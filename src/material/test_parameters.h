@@ -15,13 +15,16 @@ namespace fabrica {
 class TestParameters : public Parameters {
  public:
   using Points = std::vector<std::pair<double, double>>;
-  TestParameters(std::initializer_list<std::pair<const std::string, double>> values) : values_(values) {}
+  TestParameters(std::initializer_list<std::pair<const std::string, double>> values)
+      : values_(values) {}
 
   double real(std::string_view field) const override {
     const auto it = values_.find(std::string(field));
     return it == values_.end() ? 0.0 : it->second;
   }
-  bool given(std::string_view field) const override { return values_.count(std::string(field)) > 0; }
+  bool given(std::string_view field) const override {
+    return values_.count(std::string(field)) > 0;
+  }
   CurveView curve(std::string_view field) const override {
     const auto it = curves_.find(std::string(field));
     return it == curves_.end() ? CurveView{} : it->second;
@@ -31,14 +34,16 @@ class TestParameters : public Parameters {
     return it == tables_.end() ? TableView{} : it->second;
   }
   int rows() const override { return int(rows_.size()); }
-  double row(int i, std::string_view field) const override { return rows_[i].at(std::string(field)); }
+  double row(int i, std::string_view field) const override {
+    return rows_[i].at(std::string(field));
+  }
 
   TestParameters& set_curve(const std::string& field, const Points& points) {
     curves_[field] = own(points);
     return *this;
   }
-  TestParameters& set_table(const std::string& field, const std::vector<std::pair<double, Points>>& curves,
-                            bool log_rate) {
+  TestParameters& set_table(const std::string& field,
+                            const std::vector<std::pair<double, Points>>& curves, bool log_rate) {
     table_curves_.emplace_back();
     numbers_.emplace_back();
     std::vector<CurveView>& views = table_curves_.back();

@@ -1,8 +1,8 @@
 #pragma once
-// Beam and truss fibres from any rate law written in three dimensions: axial strain and two transverse shears are
-// given, s_yy = s_zz = s_yz = 0.
-// An isotropic law strains both lateral directions alike, e_yy = e_zz = e, and e_yz = 0; e is found by secant steps
-// so that s_yy + s_zz = 0. Laws with stress linear in e are exact after the first step. A law may offer its own
+// Beam and truss fibres from any rate law written in three dimensions: axial strain and two
+// transverse shears are given, s_yy = s_zz = s_yz = 0. An isotropic law strains both lateral
+// directions alike, e_yy = e_zz = e, and e_yz = 0; e is found by secant steps so that s_yy + s_zz =
+// 0. Laws with stress linear in e are exact after the first step. A law may offer its own
 //   Sym3<L> uniaxial(const Sym3<L>& old, const Sym3<L>& strain, Point<L>&, State<L>&) const
 // (strain.xx, xy, zx are read), which is preferred.
 #include "material/point.h"
@@ -10,15 +10,16 @@
 namespace fabrica {
 
 template <class M, class L>
-concept HasUniaxial = requires(const M& m, const Sym3<L>& s, Point<L>& p, typename M::template State<L>& h) {
+concept HasUniaxial = requires(const M& m, const Sym3<L>& s, Point<L>& p,
+                               typename M::template State<L>& h) {
   m.uniaxial(s, s, p, h);
 };
 
 namespace detail {
 
 template <int passes, class L, class M>
-FABRICA_FN Sym3<L> free_sides(const M& material, const Sym3<L>& old, Sym3<L>& strain, Point<L>& point,
-                              typename M::template State<L>& state) {
+FABRICA_FN Sym3<L> free_sides(const M& material, const Sym3<L>& old, Sym3<L>& strain,
+                              Point<L>& point, typename M::template State<L>& state) {
   const Elastic e = material.elastic();
   const Real poisson = Real(e.poisson()), stiffness = Real(2 * e.bulk + 2.0 / 3.0 * e.shear);
   const Point<L> start_point = point;
@@ -48,11 +49,13 @@ FABRICA_FN Sym3<L> free_sides(const M& material, const Sym3<L>& old, Sym3<L>& st
 
 }  // namespace detail
 
-// Advances one fibre: axial strain increment e_xx, engineering shear increments g_xy, g_zx (multiplied by
-// shear_factor). old: stress at t(n-1). Returns the stress at t(n) with yy = zz = yz = 0.
+// Advances one fibre: axial strain increment e_xx, engineering shear increments g_xy, g_zx
+// (multiplied by shear_factor). old: stress at t(n-1). Returns the stress at t(n) with yy = zz = yz
+// = 0.
 template <class L, class M>
-FABRICA_FN Sym3<L> uniaxial(const M& material, const Sym3<L>& old, const L& e_xx, const L& g_xy, const L& g_zx,
-                            const L& shear_factor, Point<L>& point, typename M::template State<L>& state) {
+FABRICA_FN Sym3<L> uniaxial(const M& material, const Sym3<L>& old, const L& e_xx, const L& g_xy,
+                            const L& g_zx, const L& shear_factor, Point<L>& point,
+                            typename M::template State<L>& state) {
   static_assert(!M::total, "laws of the deformation gradient have no uniaxial form");
   const L transverse = L(0.5) * shear_factor, zero = L(0.0);
   Sym3<L> strain{e_xx, zero, zero, transverse * g_xy, zero, transverse * g_zx};

@@ -1,6 +1,6 @@
 #pragma once
 // Linear viscoelastic solid with one Maxwell branch (*MAT_VISCOELASTIC, 006).
-//   s = 2 int (GI + (G0 - GI) e^(-BETA (t-u))) dev(D) du,   dp/dt = -K tr(D)                               (1)
+//   s = 2 int (GI + (G0 - GI) e^(-BETA (t-u))) dev(D) du,   dp/dt = -K tr(D) (1)
 // Source: Herrmann and Peterson 1968; recursion: relaxation.h.
 #include "material/point.h"
 #include "material/relaxation.h"
@@ -27,7 +27,8 @@ struct ViscoelasticSolid {
   }
 
   template <class L>
-  FABRICA_FN Sym3<L> stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point, State<L>& state) const {
+  FABRICA_FN Sym3<L> stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point,
+                            State<L>& state) const {
     L fade;
     const L phi = relaxation(L(decay) * point.dt, fade);
     const Sym3<L> e = deviator(strain);
@@ -43,7 +44,8 @@ struct Viscoelastic : ViscoelasticSolid {
   static constexpr unsigned families = in_solids | in_shells | in_beams;
 
   static Viscoelastic from(const Parameters& p) {
-    return {{Real(p.real("ro")), Real(p.real("bulk")), Real(p.real("g0")), Real(p.real("gi")), Real(p.real("beta"))}};
+    return {{Real(p.real("ro")), Real(p.real("bulk")), Real(p.real("g0")), Real(p.real("gi")),
+             Real(p.real("beta"))}};
   }
 };
 

@@ -4,7 +4,8 @@ namespace fabrica {
 namespace {
 
 // Deviatoric shear rate .01 to t = 5, then held to t = 50, G0 = .01, GI = .002, BETA = .1:
-//   s12(5) = 2 (.01) (GI 5 + (G0 - GI)/BETA (1 - e^-.5)),   s12(50) = 2 (.01) (GI 5 + (G0 - GI)/BETA (e^-4.5 - e^-5))
+//   s12(5) = 2 (.01) (GI 5 + (G0 - GI)/BETA (1 - e^-.5)),   s12(50) = 2 (.01) (GI 5 + (G0 -
+//   GI)/BETA (e^-4.5 - e^-5))
 template <class M>
 void check_ramp_and_hold(const M& m, int steps_per_unit) {
   auto state = fresh_state<M>();
@@ -25,8 +26,10 @@ void check_ramp_and_hold(const M& m, int steps_per_unit) {
 }
 
 TEST_CASE("006 and 061: ramp and hold, for coarse and fine steps") {
-  const TestParameters p{{"ro", 1e-6}, {"bulk", 1}, {"g0", .01}, {"gi", .002}, {"beta", .1}, {"dc", .1}};
-  const TestParameters kelvin{{"ro", 1e-6}, {"bulk", 1}, {"g0", .01}, {"gi", .002}, {"dc", 10}, {"fo", 1}};
+  const TestParameters p{{"ro", 1e-6}, {"bulk", 1},  {"g0", .01},
+                         {"gi", .002}, {"beta", .1}, {"dc", .1}};
+  const TestParameters kelvin{{"ro", 1e-6}, {"bulk", 1}, {"g0", .01},
+                              {"gi", .002}, {"dc", 10},  {"fo", 1}};
   for (const int steps : {1, 10, 1000}) {
     check_ramp_and_hold(Viscoelastic::from(p), steps);
     check_ramp_and_hold(KelvinMaxwell::from(p), steps);
@@ -35,10 +38,12 @@ TEST_CASE("006 and 061: ramp and hold, for coarse and fine steps") {
 }
 
 TEST_CASE("006: the pressure is elastic") {
-  const auto m = Viscoelastic::from(TestParameters{{"ro", 1e-6}, {"bulk", 2}, {"g0", .01}, {"gi", .002}, {"beta", .1}});
+  const auto m = Viscoelastic::from(
+      TestParameters{{"ro", 1e-6}, {"bulk", 2}, {"g0", .01}, {"gi", .002}, {"beta", .1}});
   auto state = fresh_state<Viscoelastic>();
   auto point = fresh_point(m, 1);
-  const Sym3<double> s = m.stress(no_stress(), Sym3<double>{.001, .001, .001, 0, 0, 0}, point, state);
+  const Sym3<double> s =
+      m.stress(no_stress(), Sym3<double>{.001, .001, .001, 0, 0, 0}, point, state);
   CHECK(near(s.xx, 0.006, parameter_error));
   CHECK(near(s.zz, 0.006, parameter_error));
 }

@@ -1,8 +1,9 @@
 #pragma once
 // Viscous foam (*MAT_VISCOUS_FOAM, 062): a nonlinear spring beside a nonlinear Maxwell branch.
-//   E_t = E1 V^(-N1),   V_t = V2 |1 - V|^N2                                                                (1)
-//   ds_e/dt = C(E_t, PR) : D,   ds_v/dt = C(E2, PR) : D - (E2 / V_t) s_v,   s = s_e + s_v                   (2)
-// V relative volume; E2 bounds the stiffness of the branch. Source: LS-DYNA theory manual (public), MAT_062.
+//   E_t = E1 V^(-N1),   V_t = V2 |1 - V|^N2 (1) ds_e/dt = C(E_t, PR) : D,   ds_v/dt = C(E2, PR) : D
+//   - (E2 / V_t) s_v,   s = s_e + s_v                   (2)
+// V relative volume; E2 bounds the stiffness of the branch. Source: LS-DYNA theory manual (public),
+// MAT_062.
 #include "material/point.h"
 #include "material/relaxation.h"
 
@@ -28,14 +29,18 @@ struct ViscousFoam {
     return {Real(p.real("ro")), Real(p.real("pr")), Real(p.real("e1")), Real(p.real("n1")),
             Real(p.real("v2")), Real(p.real("n2")), Real(p.real("e2"))};
   }
-  Elastic elastic() const { return Elastic::from_youngs(density, double(spring) + branch, poisson); }
+  Elastic elastic() const {
+    return Elastic::from_youngs(density, double(spring) + branch, poisson);
+  }
 
   template <class L>
-  FABRICA_FN Sym3<L> stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point, State<L>& state) const {
+  FABRICA_FN Sym3<L> stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point,
+                            State<L>& state) const {
     const L V = point.volume_ratio;
     const L E = L(spring) * pow(V, L(-spring_power));
     // stress of unit Young's modulus
-    const Real twice_shear = 1 / (1 + poisson), lame = poisson / ((1 + poisson) * (1 - 2 * poisson));
+    const Real twice_shear = 1 / (1 + poisson),
+               lame = poisson / ((1 + poisson) * (1 - 2 * poisson));
     const Sym3<L> unit = plus_sphere(L(twice_shear) * strain, L(lame) * trace(strain));
 
     const L V_t = L(viscosity) * pow(abs(L(1.0) - V), L(viscous_power));
