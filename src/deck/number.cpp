@@ -6,7 +6,7 @@ namespace fabrica {
 
 std::optional<double> parse_fortran_real(std::string_view text) {
   // mantissa as it stands, then e; d, D, E and a bare sign all open the exponent
-  char buffer[64];
+  char buffer[64] = {};
   std::size_t n = 0;
   bool exponent = false, digits = false;
   if (text.size() + 2 > sizeof buffer) return std::nullopt;
@@ -34,10 +34,11 @@ std::optional<double> parse_fortran_real(std::string_view text) {
       return std::nullopt;
     }
   }
-  // from_chars knows no "e+": drop the sign
   double value = 0;
   const auto [p, e] = std::from_chars(buffer, buffer + n, value);
-  if (e == std::errc::result_out_of_range && p == buffer + n && std::abs(value) < 1) return 0.0;
+  // too small for a double is zero, too large is an error
+  const bool tiny = std::string_view(buffer, n).find("e-") != std::string_view::npos;
+  if (e == std::errc::result_out_of_range && p == buffer + n && tiny) return 0.0;
   if (e != std::errc() || p != buffer + n || !std::isfinite(value)) return std::nullopt;
   return value;
 }
