@@ -172,6 +172,7 @@ class Resolver {
   // whole-model checks
   void check_mesh();
   void check_mass();
+  void merge_touching_parts(std::vector<int>& parent);
   void check_rigid_nodes();
   void check_joints();
   void check_termination();

@@ -1,6 +1,7 @@
 // Checks over the whole model: element shape, mass of nodes, competing constraints, joints, end of
 // the run.
 #include <algorithm>
+#include <map>
 #include <numeric>
 
 #include "model/geometry.h"
@@ -103,6 +104,30 @@ void Resolver::check_mass() {
           "Add *ELEMENT_MASS, or hold the node");
 }
 
+// Rigid parts that share three nodes or more can only move together: they are merged. (Fewer shared
+// nodes would make a hinge, which is reported with the other conflicts.)
+void Resolver::merge_touching_parts(std::vector<int>& parent) {
+  std::vector<int> owner(model_.nodes.id.size(), -1);
+  std::map<std::pair<int, int>, int> shared;
+  for (int p = 0; p < int(model_.parts.size()); ++p)
+    if (model_.parts[p].rigid)
+      for (int n : nodes_of_part(p)) {
+        if (owner[n] >= 0) ++shared[{owner[n], p}];
+        owner[n] = owner[n] >= 0 ? owner[n] : p;
+      }
+  for (const auto& [pair, count] : shared) {
+    const int a = root(parent, pair.first), b = root(parent, pair.second);
+    if (a == b || count < 3) continue;
+    const auto id = [&](int p) { return std::to_string(model_.parts[p].id); };
+    diagnostics_.warning("two-constraints-on-node", model_.parts[pair.second].where, "PART", "pid",
+                         "rigid parts " + id(pair.first) + " and " + id(pair.second) + " share " +
+                             std::to_string(count) + " nodes and move as one body",
+                         "State it with *CONSTRAINED_RIGID_BODIES, or separate their nodes");
+    model_.rigid_merges.push_back({a, b});
+    parent[b] = a;
+  }
+}
+
 // Every node may belong to one rigid body, and rigid nodes are not held or driven one by one.
 void Resolver::check_rigid_nodes() {
   const int parts = int(model_.parts.size());
@@ -110,6 +135,7 @@ void Resolver::check_rigid_nodes() {
   std::iota(parent.begin(), parent.end(), 0);
   for (const RigidMerge& m : model_.rigid_merges)
     parent[root(parent, m.constrained)] = root(parent, m.lead);
+  merge_touching_parts(parent);
 
   node_to_rigid_.assign(model_.nodes.id.size(), -1);
   const auto claim = [&](int n, int body, const std::string& owner) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include "model/resolve.h"
 
@@ -14,6 +15,16 @@ Vec3d unit(const Vec3d& v) {
   return length > 0 ? (1 / length) * v : v;
 }
 
+// Points in ascending order; points of equal abscissa stay in theirs.
+void sort_points(Curve& curve) {
+  std::vector<std::size_t> order(curve.x.size());
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return curve.x[a] < curve.x[b]; });
+  const auto x = curve.x, y = curve.y;
+  for (std::size_t i = 0; i < order.size(); ++i) curve.x[i] = x[order[i]], curve.y[i] = y[order[i]];
+}
+
 }  // namespace
 
 void Resolver::add_curve(const Card& card, Curve curve) {
@@ -23,14 +34,13 @@ void Resolver::add_curve(const Card& card, Curve curve) {
   if (curve.x.empty())
     error(card, "lcid", "empty-curve", "curve " + std::to_string(curve.id) + " has no points",
           "Give at least one point");
-  for (std::size_t i = 1; i < curve.x.size(); ++i)
-    if (curve.x[i] < curve.x[i - 1]) {
-      error(card, "lcid", "curve-not-ascending",
-            "the abscissae of curve " + std::to_string(curve.id) + " fall at point " +
-                std::to_string(i + 1),
+  if (!std::is_sorted(curve.x.begin(), curve.x.end())) {
+    warning(card, "lcid", "curve-not-ascending",
+            "the abscissae of curve " + std::to_string(curve.id) +
+                " do not rise; its points are taken in ascending order",
             "Sort the points");
-      break;
-    }
+    sort_points(curve);
+  }
   model_.curve_map_.emplace(curve.id, int(model_.curves.size()));
   model_.curves.push_back(std::move(curve));
 }
