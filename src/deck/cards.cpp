@@ -78,6 +78,9 @@ class CardReader {
         context_.report(Severity::unsupported, "bad-transformation", card.where, block_.keyword, "option", problem,
                         "Use TRANSL, ROTATE, SCALE, MIRROR and POINT");
     }
+    if (schema_.name == "NODE_TRANSFORM" && card.row_count() > 0)
+      context_.report(Severity::unsupported, "unsupported-keyword", card.where, block_.keyword, "",
+                      "node sets are not moved", "Move the nodes with *INCLUDE_TRANSFORM");
     context_.builder.add_card(std::move(card));
   }
 
