@@ -66,6 +66,9 @@ void Resolver::run() {
   // what the rest refers to
   read_all({{"DEFINE_CURVE", &R::read_curve},
             {"DEFINE_CURVE_SMOOTH", &R::read_smooth_curve},
+            {"DEFINE_CURVE_FUNCTION", &R::read_function},
+            {"DEFINE_FUNCTION", &R::read_function},
+            {"DEFINE_FUNCTION_TABULATED", &R::read_function},
             {"DEFINE_BOX", &R::read_box},
             {"DEFINE_COORDINATE_SYSTEM", &R::read_coordinate_system},
             {"DEFINE_COORDINATE_NODES", &R::read_coordinate_nodes},
@@ -130,7 +133,7 @@ void Resolver::run() {
 void Resolver::read_all(const std::vector<Handler>& handlers) {
   for (std::size_t i = 0; i < model_.cards.size(); ++i) {
     const Card& card = *model_.cards[i];
-    if (!card.schema || card.schema->support == Support::unsupported) continue;
+    if (!card.schema) continue;
     const std::string_view name = card.schema->name;
     for (const Handler& h : handlers) {
       const bool prefix = h.keyword.back() == '*';

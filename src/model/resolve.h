@@ -76,6 +76,7 @@ class Resolver {
   // definitions
   void read_curve(const Card& card);
   void read_smooth_curve(const Card& card);
+  void read_function(const Card& card);
   void read_table(const Card& card);
   void read_box(const Card& card);
   void read_coordinate_system(const Card& card);
