@@ -12,8 +12,6 @@
 #include <thread>
 
 #include "deck/reader.h"
-#include "deck/writer.h"
-#include "model/check.h"
 #include "result/binout.h"
 #include "result/csv_history.h"
 #include "result/d3plot.h"
@@ -41,15 +39,19 @@ class Output {
   Output(const RunCommand& c, const Simulation& s, double restart_time)
       : simulation_(s),
         history_(s),
-        binout_(make<BinoutWriter>(restart_time, c.out + "/binout", s.model().title)),
-        csv_(make<CsvHistoryWriter>(restart_time, c.out + "/csv")) {
+        binout_(restart_time > 0 ? std::make_unique<BinoutWriter>(c.out + "/binout", s.model().title, restart_time)
+                                 : std::make_unique<BinoutWriter>(c.out + "/binout", s.model().title)),
+        csv_(restart_time > 0 ? std::make_unique<CsvHistoryWriter>(c.out + "/csv", restart_time)
+                              : std::make_unique<CsvHistoryWriter>(c.out + "/csv")) {
     const Model& m = s.model();
     D3plotOptions options = d3plot_options(m);
     options.rigid_walls = int(m.rigid_walls.size());
     const ResultMesh mesh = result_mesh(m);
     d3plot_ = restart_time > 0 ? std::make_unique<D3plotWriter>(c.out + "/d3plot", mesh, options, restart_time)
                                : std::make_unique<D3plotWriter>(c.out + "/d3plot", mesh, options);
-    if (c.vtu) vtu_ = std::make_unique<VtuSeriesWriter>(c.out + "/animation.pvd", m);
+    if (c.vtu)
+      vtu_ = restart_time > 0 ? std::make_unique<VtuWriter>(c.out + "/animation.pvd", mesh, VtuOptions{}, restart_time)
+                              : std::make_unique<VtuWriter>(c.out + "/animation.pvd", mesh);
     for (const HistoryDatabase& d : history_.databases()) {
       next_.push_back(first_after(restart_time, d.interval));
       binout_->add(d);
@@ -89,10 +91,6 @@ class Output {
   }
 
  private:
-  template <class Writer, class... Args>
-  static std::unique_ptr<Writer> make(double restart_time, Args... args) {
-    return restart_time > 0 ? std::make_unique<Writer>(args..., restart_time) : std::make_unique<Writer>(args...);
-  }
   static double first_after(double t, double interval) {
     return t > 0 ? (std::floor(t / interval * (1 + 1e-12)) + 1) * interval : 0;
   }
@@ -102,7 +100,7 @@ class Output {
   std::unique_ptr<BinoutWriter> binout_;
   std::unique_ptr<CsvHistoryWriter> csv_;
   std::unique_ptr<D3plotWriter> d3plot_;
-  std::unique_ptr<VtuSeriesWriter> vtu_;
+  std::unique_ptr<VtuWriter> vtu_;
   std::vector<double> next_;
   double plot_interval_ = 0, next_plot_ = 0;
   bool last_ = false;
@@ -238,30 +236,6 @@ int run_command(const RunCommand& c) {
   print_summary(j);
   if (stop_requested) return 130;
   return sound && simulation.ending() != Ending::time_step_too_small ? 0 : 3;
-}
-
-int check_command(const CheckCommand& c) {
-  Diagnostics diagnostics;
-  std::unique_ptr<Model> model = read_deck(c.deck, diagnostics);
-  CheckReport report;
-  if (model) {
-    report = check_model(*model, diagnostics);
-    if (!diagnostics.has_errors()) {
-      Simulation simulation(*model, {}, diagnostics);
-      if (!diagnostics.has_errors()) fmt::print("{}", simulation.contacts().initial_report().text());
-    }
-    if (!c.write.empty()) {
-      std::ofstream out(c.write);
-      write_deck(*model, out);
-      if (!out) {
-        fmt::print(stderr, "fabrica: cannot write {}\n", c.write);
-        return 1;
-      }
-    }
-  }
-  fmt::print("{}", format_check(report, diagnostics));
-  if (diagnostics.has_errors() || !model) return 1;
-  return diagnostics.count(Severity::unsupported) > 0 ? 2 : 0;
 }
 
 }  // namespace fabrica
