@@ -193,6 +193,19 @@ void Resolver::read_coordinate_nodes(const Card& card) {
   const auto& x = model_.nodes.x;
   s.origin = x[s.node[0]];
   add_system(card, s, x[s.node[1]] - s.origin, x[s.node[2]] - s.origin);
+
+  // DIR names the axis along the first two nodes: the axes are renamed in cyclic order
+  const std::string_view direction = card.text("dir");
+  const int turn = direction.starts_with("Y") ? 1 : direction.starts_with("Z") ? 2 : 0;
+  if (turn == 0 || model_.coordinate_systems.empty()) return;
+  if (CoordinateSystem& last = model_.coordinate_systems.back(); last.id == s.id) {
+    const Mat3d along = last.axes;
+    for (int k = 0; k < 3; ++k)
+      for (int j = 0; j < 3; ++j) last.axes((k + turn) % 3, j) = along(k, j);
+    if (last.moves)
+      unsupported(card, "dir", "unsupported-axis", "moving axes along y or z are not computed",
+                  "Number the nodes so that the first two lie on the x axis");
+  }
 }
 
 void Resolver::read_coordinate_vector(const Card& card) {

@@ -18,7 +18,9 @@ bool equal(const Vec3d& a, const Vec3d& b) { return a.x == b.x && a.y == b.y && 
 
 // Names the rigid parts all of whose nodes are among the targets.
 void Resolver::add_initial(InitialVelocity v) {
-  if (!v.nodes.empty()) {
+  const bool rigid =
+      std::any_of(model_.parts.begin(), model_.parts.end(), [](const Part& p) { return p.rigid; });
+  if (rigid && v.nodes.size() > 2) {
     std::vector<std::uint8_t> in(model_.nodes.id.size(), 0);
     for (int n : v.nodes) in[n] = 1;
     for (int p = 0; p < int(model_.parts.size()); ++p) {

@@ -248,21 +248,25 @@ std::vector<int> Resolver::nodes_of_elements(Family family,
 
 std::vector<int> Resolver::nodes_of_part(int part) const { return nodes_of_parts({part}); }
 
+// Few nodes are sorted, many are marked: small parts of big models stay cheap.
 std::vector<int> Resolver::nodes_of_parts(const std::vector<int>& parts) const {
-  std::vector<std::uint8_t> used(model_.nodes.id.size(), 0);
-  std::vector<int> of_element;
+  std::vector<int> nodes;
   for (int p : parts) {
     if (p < 0) continue;
     for (int f = 1; f < 5; ++f) {
       const Rows& rows = part_elements_[f];
-      for (int i = rows.start[p]; i < rows.start[p + 1]; ++i) {
-        of_element.clear();
-        element_nodes(Family(f), rows.element[i], of_element);
-        for (int n : of_element) used[n] = 1;
-      }
+      for (int i = rows.start[p]; i < rows.start[p + 1]; ++i)
+        element_nodes(Family(f), rows.element[i], nodes);
     }
   }
-  std::vector<int> nodes;
+  if (nodes.size() < model_.nodes.id.size() / 16) {
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    return nodes;
+  }
+  std::vector<std::uint8_t> used(model_.nodes.id.size(), 0);
+  for (int n : nodes) used[n] = 1;
+  nodes.clear();
   for (int n = 0; n < int(used.size()); ++n)
     if (used[n]) nodes.push_back(n);
   return nodes;
