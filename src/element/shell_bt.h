@@ -9,8 +9,12 @@
 // v31)/2A.
 // Hourglass: h = (1,-1,1,-1), gamma = h - (h.x) B1 - (h.y) B2, rates gamma.w, gamma.vz, gamma.v
 // with stiffnesses
+// The membrane rates are taken relative to the frame's rotation, which a warped element (h.z != 0) would feel:
+//   q_x = gamma.vx + (h.z) vz,x,  q_y = gamma.vy + (h.z) vz,y
 //   C1 = QB E h^3 A BB/192,  C2 = QW k G h^3 BB/12,  C3 = QM E h A BB/8,  BB = B1.B1 + B2.B2    (3)
-// IHQ 4, 5: Q += C q dt. IHQ 1-3 (viscous): Q = C q sqrt(A)/c.
+// IHQ 4, 5: Q <- k (Q + C q dt), k the share of the elastic trial stress that the layers' return mapping kept: the
+// stress field that the hourglass modes stand for would flow with them, and elastic forces beside flowing stress
+// would grow without bound. IHQ 1-3 (viscous): Q = C q sqrt(A)/c.
 // Warping (Belytschko, Wong, Chiang): zg = (h.z)/4, s = 2 zg/A^2
 //   kxx += s (x31 vx31 - x42 vx42),  kyy += s (y31 vy31 - y42 vy42),
 //   2kxy += s (y31 vx31 - y42 vx42 + x31 vy31 - x42 vy42)                                       (4)
@@ -93,7 +97,7 @@ struct ShellBTOf {
       totals.damping = mid_area * r.alive * damp_shell(p, e, h, dt, step, r);
 
     Hourglass<L> q;
-    totals.hourglass = hourglass(p, g, motion, gradient, h, root_area, dt, r.alive, s, q);
+    totals.hourglass = hourglass(p, g, motion, gradient, h, root_area, dt, r, s, q);
     corner_forces(p, g, r, q, out);
     if (project) project_forces(c, out);
   }
@@ -188,8 +192,9 @@ struct ShellBTOf {
   template <class L>
   FABRICA_FN static L hourglass(const ElementParameters& p, const Geometry<L>& g,
                                 const Motion<L>& u, const ShellGradient<L>& d, const L& h,
-                                const L& root_area, const L& dt, const L& alive, StateView<L> s,
-                                Hourglass<L>& out) {
+                                const L& root_area, const L& dt, const ShellResultants<L>& r,
+                                StateView<L> s, Hourglass<L>& out) {
+    const L alive = r.alive;
     const L bb = L(2.0) * g.half_inverse * g.half_inverse *
                  (fma(g.x31, g.x31, g.y31 * g.y31) + fma(g.x42, g.x42, g.y42 * g.y42));
     const Real qm = p.hourglass_coefficient;
@@ -203,8 +208,8 @@ struct ShellBTOf {
     const L wyx = g.dx(u.wy31, u.wy42), wyy = g.dy(u.wy31, u.wy42);
     const L rate[5] = {u.hwx - fma(g.hx, wxx, g.hy * wxy), u.hwy - fma(g.hx, wyx, g.hy * wyy),
                        u.hv.z - fma(g.hx, d.x.z, g.hy * d.y.z),
-                       u.hv.x - fma(g.hx, d.x.x, g.hy * d.y.x),
-                       u.hv.y - fma(g.hx, d.x.y, g.hy * d.y.y)};
+                       u.hv.x - fma(g.hx, d.x.x, g.hy * d.y.x) + g.hz * d.x.z,
+                       u.hv.y - fma(g.hx, d.x.y, g.hy * d.y.y) + g.hz * d.y.z};
     L* const q = &out.mx;
     L energy = L(0.0);
     const bool stiff = p.hourglass >= 4;
@@ -213,7 +218,7 @@ struct ShellBTOf {
       const L c = stiffness[k < 2 ? 0 : k == 2 ? 1 : 2];
       if (stiff) {
         const L old = alive * s.load(hourglass_field + k);
-        q[k] = alive * fma(c * dt, rate[k], old);
+        q[k] = (alive * r.kept) * fma(c * dt, rate[k], old);
         s.store(hourglass_field + k, q[k]);
         energy = fma(L(0.5) * (old + q[k]), rate[k], energy);
       } else {
@@ -230,16 +235,17 @@ struct ShellBTOf {
   FABRICA_FN static void corner_forces(const ElementParameters& p, const Geometry<L>& g,
                                        const ShellResultants<L>& r, const Hourglass<L>& q,
                                        CornerForces<L, 4>& out) {
-    auto pair = [&](const L& nx, const L& ny, const L& Q, L& P, L& R) {
-      const L a = g.half_inverse * fma(g.area, nx, -(Q * g.hx)),
-              b = g.half_inverse * fma(g.area, ny, -(Q * g.hy));
+    auto pair = [&](const L& nx, const L& ny, const L& Q, L& P, L& R, const L& x = L(0.0), const L& y = L(0.0)) {
+      const L a = g.half_inverse * (fma(g.area, nx, -(Q * g.hx)) + x),
+              b = g.half_inverse * (fma(g.area, ny, -(Q * g.hy)) + y);
       P = fma(g.y42, a, -(g.x42 * b));
       R = fma(g.y31, a, -(g.x31 * b));
     };
     Vec3<L> P, R;
     pair(r.nxx, r.nxy, q.fx, P.x, R.x);
     pair(r.nxy, r.nyy, q.fy, P.y, R.y);
-    pair(r.qx, r.qy, q.fz, P.z, R.z);
+    // the share of the membrane modes that undoes the rotation of a warped element
+    pair(r.qx, r.qy, q.fz, P.z, R.z, q.fx * g.hz, q.fy * g.hz);
     if (warped(p)) {
       const L s = g.area * g.warp();
       P.x += s * fma(g.x31, r.mxx, g.y31 * r.mxy), R.x += s * fma(g.x42, r.mxx, g.y42 * r.mxy);
