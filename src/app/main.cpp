@@ -22,11 +22,11 @@ void add_run(CLI::App& app, fabrica::RunCommand& c) {
   run->callback([&c] { throw CLI::RuntimeError(fabrica::run_command(c)); });
 }
 
-[[maybe_unused]] void add_check(CLI::App& app, fabrica::CheckCommand& c) {
+void add_check(CLI::App& app, fabrica::CheckCommand& c) {
   auto* check = app.add_subcommand("check", "Read a deck, report what it holds and what is wrong with it");
   check->add_option("deck", c.deck, "keyword deck")->required()->check(CLI::ExistingFile);
   check->add_option("--write", c.write, "write the model back as one deck");
-  check->callback([&c] { throw CLI::RuntimeError(0); });
+  check->callback([&c] { throw CLI::RuntimeError(fabrica::check_command(c)); });
 }
 
 }  // namespace
@@ -40,7 +40,7 @@ int main(int argc, char** argv) {
   fabrica::BenchCommand bench;
   fabrica::ShowCommands show;
   add_run(app, run);
-  //CHECK add_check(app, check);
+  add_check(app, check);
   fabrica::add_bench(app, bench);
   fabrica::add_show(app, show);
   try {
