@@ -37,8 +37,12 @@ build: packages ## the program, optimised, as build/fabrica
 demo: build ## crush a square tube and draw the result
 	@echo "crushing a tube: cases/tube-crush -> $(OUT)/tube-crush (one to two minutes)"
 	@$(FABRICA) run cases/tube-crush/tube-crush.k --out $(OUT)/tube-crush --threads $(THREADS)
-	@$(FABRICA) picture $(OUT)/tube-crush --out $(OUT)/tube-crush/tube-crush.png --times 0,5,10,20
-	@echo "results in $(OUT)/tube-crush, picture in $(OUT)/tube-crush/tube-crush.png"
+	@$(FABRICA) picture $(OUT)/tube-crush --out $(OUT)/tube-crush/tube-crush.png --times 0,5,10,20 > /dev/null
+	@$(FABRICA) plot $(OUT)/tube-crush glstat:kinetic_energy glstat:internal_energy glstat:hourglass_energy \
+	  glstat:total_energy --out $(OUT)/tube-crush/energy.png --title "Energy of the crush" > /dev/null
+	@echo "results: $(OUT)/tube-crush (read summary.json first)"
+	@echo "picture: $(OUT)/tube-crush/tube-crush.png"
+	@echo "energies: $(OUT)/tube-crush/energy.png"
 
 test: build ## all tests, with kernels in float and in double
 	@echo "testing release"
