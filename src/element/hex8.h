@@ -29,7 +29,7 @@ struct Hex8 {
   template <class M>
   static constexpr int hourglass_at = 2 + (M::total ? 12 : 0);
   template <class M>
-  static int point_at(const ElementParameters& p) {
+  FABRICA_FN static int point_at(const ElementParameters& p) {
     return hourglass_at<M> + (p.hourglass >= 4 ? 12 : 0);
   }
   template <class M>

@@ -261,10 +261,10 @@ FABRICA_FN L damp_shell(const ElementParameters& p, const ShellStrain<L>& e, con
 }
 
 // Initial plate and bar wave speeds.
-inline Real plate_speed(const ElementParameters& p) {
+FABRICA_FN Real plate_speed(const ElementParameters& p) {
   return sqrt(p.youngs / ((1 - p.poisson * p.poisson) * p.density));
 }
-inline Real bar_speed(const ElementParameters& p) { return sqrt(p.youngs / p.density); }
+FABRICA_FN Real bar_speed(const ElementParameters& p) { return sqrt(p.youngs / p.density); }
 
 // Stable step of a quadrilateral by ISDO; faster: ratio of the sound speed to the initial one.
 template <class L>

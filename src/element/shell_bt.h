@@ -181,7 +181,7 @@ struct ShellBTOf {
     }
     e.kxx *= dt, e.kyy *= dt, e.kxy *= L(0.5) * dt;
   }
-  static bool warped(const ElementParameters& p) { return p.warping || p.formulation == 10; }
+  FABRICA_FN static bool warped(const ElementParameters& p) { return p.warping || p.formulation == 10; }
 
   template <class L>
   struct Hourglass {

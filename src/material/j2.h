@@ -16,8 +16,8 @@ namespace fabrica {
 
 struct J2Moduli {
   Real bulk, shear, kinematic;  // K, G, Hk
-  Real youngs() const { return 9 * bulk * shear / (3 * bulk + shear); }
-  Real poisson() const { return (3 * bulk - 2 * shear) / (2 * (3 * bulk + shear)); }
+  FABRICA_FN Real youngs() const { return 9 * bulk * shear / (3 * bulk + shear); }
+  FABRICA_FN Real poisson() const { return (3 * bulk - 2 * shear) / (2 * (3 * bulk + shear)); }
 };
 
 // q(lambda) of equation (2), over x = cb lambda; ratio = ca / cb

@@ -22,7 +22,7 @@ struct ViscoelasticSolid {
     Sym3<L> maxwell;  // and of the Maxwell branch
   };
 
-  Elastic elastic() const {
+  FABRICA_FN Elastic elastic() const {
     return {density, bulk, short_shear > long_shear ? short_shear : long_shear};
   }
 
