@@ -21,11 +21,16 @@ __global__ void choose_step_kernel(const __grid_constant__ GpuArrays g,
   StepFinding mine;
   for (int t = int(threadIdx.x); t < g.tiles; t += step_threads)
     look_at(g.tile[t], g.result[t], mine);
-  step[threadIdx.x] = mine.step, ending[threadIdx.x] = mine.ending;
-  __syncthreads();
-  if (threadIdx.x != 0) return;
-  for (int k = 1; k < step_threads; ++k) join(mine, {step[k], ending[k]});
-  choose_step(mine, stepping, *g.clock);
+  const int me = int(threadIdx.x);
+  step[me] = mine.step, ending[me] = mine.ending;
+  // in pairs: neither the smallest step nor the worst ending depends on the order
+  for (int half = step_threads / 2; half > 0; half /= 2) {
+    __syncthreads();
+    if (me >= half) continue;
+    join(mine, {step[me + half], ending[me + half]});
+    step[me] = mine.step, ending[me] = mine.ending;
+  }
+  if (me == 0) choose_step(mine, stepping, *g.clock);
 }
 
 __global__ void node_kernel(const __grid_constant__ GpuArrays g) {
