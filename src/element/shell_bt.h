@@ -29,6 +29,8 @@ template <ShellFrame F>
 struct ShellBTOf {
   static constexpr int corners = 4;
   static constexpr bool rotations = true;
+  // (3) in amplitudes: gamma.v is four times the amplitude of an hourglass mode, and so is its force
+  static constexpr double stiffness_share = 1.0 / 16;
   // history: thickness, hourglass forces (moments x, y; force z; forces x, y), layers
   static constexpr int thickness_field = 0, hourglass_field = 1, layers_field = 6;
 
@@ -218,7 +220,7 @@ struct ShellBTOf {
       const L c = stiffness[k < 2 ? 0 : k == 2 ? 1 : 2];
       if (stiff) {
         const L old = alive * s.load(hourglass_field + k);
-        q[k] = (alive * r.kept) * fma(c * dt, rate[k], old);
+        q[k] = (alive * r.kept) * fma(c * L(stiffness_share) * dt, rate[k], old);
         s.store(hourglass_field + k, q[k]);
         energy = fma(L(0.5) * (old + q[k]), rate[k], energy);
       } else {

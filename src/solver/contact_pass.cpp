@@ -218,7 +218,7 @@ void ContactPass::node_forces(State& state, const ActiveNode& active, int chunk)
     if (from >= 0) next[i] = slots[from], taken[from] = true;
     next[i].segment = c.segment;
     if (!started_) {
-      next[i].baseline = accepted[i].depth;
+      next[i].baseline = next[i].depth = accepted[i].depth;
       chunk_initial_[chunk].push_back({contact_index_, tracked_.nodes[active.tracked].node,
                                        c.segment, reference_.segments[c.segment].part,
                                        accepted[i].depth});
@@ -248,8 +248,14 @@ void ContactPass::push(State& state, int tracked, const Evaluation& e, const Acc
     const double soft = soft_stiffness(contact_.sofscl, mass, step_);
     k = std::isfinite(k) ? std::max(k, soft) : soft;
   }
+  const double rate = -dot(v, a.direction);
+  // depth that appears faster than the surfaces approach comes from a change of segment or side: it stores no
+  // energy, so it must not push
+  const double sudden = a.depth - slot.depth - 2 * std::max(0.0, rate) * dt;
+  if (started_ && sudden > 0) slot.baseline += sudden;
+  slot.depth = a.depth;
   slot.baseline = std::min(slot.baseline, a.depth);
-  const double depth = a.depth - slot.baseline, rate = -dot(v, a.direction);
+  const double depth = a.depth - slot.baseline;
   const double normal = depth > 0 ? normal_force(k, depth, rate, mass, contact_.vdc / 100) : 0.0;
   Vec3d friction{0, 0, 0};
   if (friction_.active()) {

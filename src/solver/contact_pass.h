@@ -31,6 +31,7 @@ struct ContactCandidate {
 struct ContactSlot {
   int segment = -1;
   double baseline = 0;  // penetration that is not pushed back
+  double depth = 0;     // of the last cycle
   Vec3d friction{0, 0, 0};
 };
 
