@@ -76,6 +76,30 @@ RigidWall plane(const Vec3d& tail, const Vec3d& normal) {
 
 }  // namespace
 
+TEST_CASE("supports take out the initial velocity that they forbid, and no more") {
+  Mechanism m;
+  const int fixed = m.node({0, 0, 0}), slider = m.node({1, 0, 0}), free_node = m.node({2, 0, 0});
+  m.model.nodes.translation_code = {7, 0, 0};
+  const double c = std::cos(0.3), s = std::sin(0.3);
+  CoordinateSystem system;
+  system.axes = {{{c, s, 0}, {-s, c, 0}, {0, 0, 1}}};
+  m.model.coordinate_systems = {system};
+  SinglePointConstraint spc;
+  spc.nodes = {slider}, spc.fixed = {true, false, false, false, false, false}, spc.local_system = 0;
+  m.model.constraints = {spc};
+  m.start();
+  for (NodeMotion& n : m.state.nodes) n.v = {3, -2, 5};
+  NodeConstraints constraints(m.model, m.state, m.diagnostics);
+  constraints.stop_supported(m.state);
+  CHECK(norm(m.state.nodes[fixed].v) == 0);
+  CHECK(norm(m.state.nodes[free_node].v - Vec3d{3, -2, 5}) == 0);
+  // along the fixed axis nothing, across it all
+  const Vec3d v = m.state.nodes[slider].v;
+  CHECK(std::abs(c * v.x + s * v.y) < 1e-14);
+  CHECK(std::abs(-s * v.x + c * v.y - (-s * 3 + c * -2)) < 1e-14);
+  CHECK(v.z == 5);
+}
+
 TEST_CASE("free fall is exact") {
   Mechanism m;
   m.node({0, 0, 0});

@@ -177,6 +177,26 @@ void NodeConstraints::apply_node(State& state, int entry, bool rotation) {
         conditions_[i].angle += state.dt * dot(direction_of(conditions_[i], state), v);
 }
 
+void NodeConstraints::stop_supported(State& state) const {
+  for (int e = 0; e < size(); ++e)
+    for (const bool rotation : {false, true}) {
+      if (rotation && state.spins.empty()) continue;
+      Vec3d& v = rotation ? state.spins[reactions_[e].node].w : state.nodes[reactions_[e].node].v;
+      std::array<Vec3d, 3> base;
+      int known = 0;
+      for (int i = begin_[e]; i < begin_[e + 1] && known < 3; ++i) {
+        const Condition& c = conditions_[i];
+        if (c.motion >= 0 || c.rotation != rotation || !alive(c.birth, c.death, 0, 0)) continue;
+        Vec3d n = direction_of(c, state);
+        for (int k = 0; k < known; ++k) n -= dot(n, base[k]) * base[k];
+        const double rest = norm(n);
+        if (rest < 1e-6) continue;
+        base[known++] = n = (1 / rest) * n;
+        v -= dot(n, v) * n;
+      }
+    }
+}
+
 void NodeConstraints::apply(State& state) {
   state.energy.external_work += pending_;
   pending_ = 0;

@@ -19,6 +19,8 @@ class NodeConstraints {
  public:
   // Conditions on nodes that a rigid body or a tied contact owns are left out with a warning.
   NodeConstraints(const Model& model, const State& state, Diagnostics& diagnostics);
+  // Takes out of initial velocities what supports forbid: such motion carries no energy at t = 0.
+  void stop_supported(State& state) const;
   // Corrects v+ and w+ of constrained nodes; state.nodes hold x(n) and v+ before correction.
   void apply(State& state);
 

@@ -58,6 +58,7 @@ Simulation::Simulation(const Model& model, const RunOptions& options, Diagnostic
   discrete_ = std::make_unique<DiscreteElements>(model, state_, diagnostics);
   discrete_->use_bodies(*rigid_bodies_);
   apply_initial_conditions(model, state_, *rigid_bodies_);
+  node_constraints_->stop_supported(state_);
   part_internal_.assign(model.parts.size(), 0);
   part_hourglass_.assign(model.parts.size(), 0);
 }
