@@ -91,10 +91,10 @@ FABRICA_FN void transpose_rows(const Vec3<Pack<Real, W>>& f, Real* out) {
                           _mm512_unpackhi_pd(t1, t3)};
     for (int k = 0; k < 4; ++k) {  // r[k]: lanes k, k + 4, k + 8, k + 12
       const __m512 q = (__m512)r[k];
-      _mm_store_ps(out + 4 * k, _mm512_castps512_ps128(q));
-      _mm_store_ps(out + 4 * (k + 4), _mm512_extractf32x4_ps(q, 1));
-      _mm_store_ps(out + 4 * (k + 8), _mm512_extractf32x4_ps(q, 2));
-      _mm_store_ps(out + 4 * (k + 12), _mm512_extractf32x4_ps(q, 3));
+      _mm_store_ps((float*)out + 4 * k, _mm512_castps512_ps128(q));
+      _mm_store_ps((float*)out + 4 * (k + 4), _mm512_extractf32x4_ps(q, 1));
+      _mm_store_ps((float*)out + 4 * (k + 8), _mm512_extractf32x4_ps(q, 2));
+      _mm_store_ps((float*)out + 4 * (k + 12), _mm512_extractf32x4_ps(q, 3));
     }
     return;
   }
