@@ -36,7 +36,7 @@ double peak() {
     const int n = 2'000'000;
     for (int k = 0; k < n; ++k)
       for (int i = 0; i < 12; ++i) x[i] = fma(x[i], m, d);
-    for (int i = 0; i < 12; ++i) asm volatile("" : "+m"(x[i]) : : "memory");
+    for (int i = 0; i < 12; ++i) asm volatile("" : "+v"(x[i].v));
     best = std::max(best, 2.0 * 12 * native_width * double(n) / seconds_since(start) / 1e9);
   }
   return best;
