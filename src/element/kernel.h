@@ -103,7 +103,7 @@ struct StateView {
   }
   FABRICA_FN void store(int field, const L& value) const {
     if constexpr (LaneTraits<L>::width == 1)
-      block[field * block_size] = value;
+      block[field * block_size] = Real(value);
     else
       value.store(block + field * block_size);
   }
