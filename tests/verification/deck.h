@@ -34,12 +34,11 @@ class Deck {
     text_ += "*" + name + "\n";
     return *this;
   }
-  // one card
+  // one card; the comma at its end makes a line of one value comma format too
   template <class... T>
   Deck& card(T... values) {
     std::string line;
     ((line += field(values), line += ","), ...);
-    line.pop_back();
     text_ += line + "\n";
     return *this;
   }
@@ -167,7 +166,11 @@ struct Run {
   }
   // steps until the time is reached
   void until(double time) {
-    while (this->time() < time) REQUIRE((step() || simulation->ending() == Ending::end_time));
+    while (this->time() < time) {
+      const bool going = step();
+      INFO(simulation->ending_text());
+      REQUIRE((going || simulation->ending() == Ending::end_time));
+    }
   }
 };
 

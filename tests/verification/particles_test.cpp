@@ -1,0 +1,100 @@
+// Single masses, springs, bodies and walls through decks (V01, V52, V57, V68).
+#include <cmath>
+
+#include "deck.h"
+
+using namespace fabrica;
+using namespace fabrica::verification;
+
+namespace {
+constexpr double pi = 3.14159265358979323846;
+}
+
+// V01: x = -g t^2/2, exact for the half-step start.
+TEST_CASE("V01: free fall of one node over 1e6 steps") {
+  Deck deck;
+  const double g = 9.81e-3, dt = 1e-3;
+  deck.end(2000).constant_step(dt, 1);
+  deck.mass(deck.node({0, 0, 0}), 2.0);
+  deck.curve(2, {{0, 1}, {1e4, 1}});
+  deck.key("LOAD_BODY_Z").card(2, g);
+  Run run(deck);
+  for (int i = 0; i < 1000000; ++i) run.step();
+  const double t = 1000000 * dt, error = run.x(1).z / (-0.5 * g * t * t) - 1;
+  report("relative error", {error});
+  CHECK(std::abs(error) < 1e-9);  // what is asked in float; positions add up in double, 5e-12
+  CHECK(run.time() == doctest::Approx(t).epsilon(1e-14));
+}
+
+// V52: L = 1 m, 90 degrees: T = 1.1803406 x 2 pi sqrt(L/g) = 2.367842 s for a point mass. Bodies are
+// given by *PART_INERTIA; the inertia about the centre, I/m = 1e-4 L^2, adds its root to the period.
+TEST_CASE("V52: a pendulum on a revolute joint") {
+  Deck deck;
+  const double L = 1000, g = 9.81e-3, ratio = 1e-4;
+  deck.end(8000).constant_step(0.2, 1);
+  deck.key("SECTION_SOLID").card(1, 1);
+  deck.key("MAT_RIGID").card(1, 7.85e-6, 210.0, 0.3);
+  deck.key("MAT_RIGID").card(2, 7.85e-6, 210.0, 0.3).card(1, 7, 7).card(0);
+  for (int p : {1, 2}) {
+    const double at = p == 1 ? L : 0;
+    deck.key("PART_INERTIA").card("body").card(p, 1, p);
+    deck.card(at, 0, 0, 1.0, 0, 0);
+    deck.card(ratio * L * L, 0, 0, ratio * L * L, 0, ratio * L * L).card(0, 0, 0, 0, 0, 0);
+    bricks(deck, 1, 1, 1, [&](int i, int j, int k) { return Vec3d(at + i, j, k); },
+           [](int, int, int) { return 0; }, p);
+  }
+  const int a1 = deck.node({0, 0, 0}), a2 = deck.node({0, 0, 100}), b1 = deck.node({0, 0, 0}),
+            b2 = deck.node({0, 0, 100}), tip = deck.node({L, 0, 0});
+  deck.node_set(1, {b1, b2, tip}).node_set(2, {a1, a2});
+  deck.key("CONSTRAINED_EXTRA_NODES_SET").card(1, 1).card(2, 2);
+  deck.key("CONSTRAINED_JOINT_REVOLUTE").card(a1, b1, a2, b2);
+  deck.curve(2, {{0, 1}, {1e5, 1}});
+  deck.key("LOAD_BODY_Y").card(2, g);
+  Run run(deck);
+  double before = 0;
+  std::vector<double> zeros;
+  while (run.step()) {
+    const double x = run.x(tip).x;
+    if (x * before < 0) zeros.push_back(run.time() - run.state().dt * x / (x - before));
+    before = x;
+  }
+  REQUIRE(zeros.size() >= 5);
+  const double period = (zeros[4] - zeros[0]) / 2;
+  const double exact = 1.1803406 * 2 * pi * std::sqrt(L / g) * std::sqrt(1 + ratio);
+  report("period / exact - 1", {period / exact - 1});
+  CHECK(period == doctest::Approx(exact).epsilon(1e-5));
+}
+
+// V57: a node follows velocity, acceleration and displacement curves; at the end it has moved by the
+// integral of the curve. v = 3 t: x = 3 t^2/2 by the midpoint rule, exact for a linear curve.
+TEST_CASE("V57: prescribed motion is the integral of its curve") {
+  for (int kind : {0, 2}) {
+    Deck deck;
+    deck.end(1.0).constant_step(1.0 / 512, 1);
+    const int n = deck.node({5, 0, 0});
+    deck.mass(n, 1.0);
+    deck.curve(2, {{0, 0}, {2, kind == 0 ? 6.0 : 3.0}});
+    deck.key("BOUNDARY_PRESCRIBED_MOTION_NODE").card(n, 1, kind, 2, 1.0);
+    Run run(deck);
+    run.finish();
+    CHECK(run.time() == doctest::Approx(1).epsilon(1e-14));
+    report("displacement - 1.5", {run.displacement(n).x - 1.5});
+    CHECK(run.displacement(n).x == doctest::Approx(1.5).epsilon(1e-12));
+  }
+}
+
+// V68: masses m hit a free wall M at rest: common velocity m v / (m + M).
+TEST_CASE("V68: a wall and the nodes that it stops share their momentum") {
+  Deck deck;
+  const double m = 3, M = 5, v = 2;
+  deck.end(1).constant_step(1e-3, 1);
+  const int n = deck.node({0, 0, 0.1});
+  deck.mass(n, m);
+  deck.key("INITIAL_VELOCITY_NODE").card(n, 0, 0, -v);
+  deck.key("RIGIDWALL_PLANAR_MOVING").card(0).card(0, 0, 0, 0, 0, 1.0).card(M, 0);
+  Run run(deck);
+  run.finish();
+  report("node, wall, expected", {run.v(n).z, run.simulation->rigid_walls().velocity(0).z, -m * v / (m + M)});
+  CHECK(run.v(n).z == doctest::Approx(-m * v / (m + M)).epsilon(1e-12));
+  CHECK(run.simulation->rigid_walls().velocity(0).z == doctest::Approx(-m * v / (m + M)).epsilon(1e-12));
+}
