@@ -83,7 +83,7 @@ void Resolver::read_extent(const Card& card) {
 void Resolver::read_history(const Card& card) {
   if (card.schema->support != Support::full) return;
   OutputRequests& out = model_.output;
-  const std::string_view name = card.schema->name.substr(17);
+  const std::string_view name = std::string_view(card.schema->name).substr(17);
   const bool sets = name.ends_with("_SET");
   struct Kind {
     std::string_view word;
