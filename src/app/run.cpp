@@ -140,6 +140,7 @@ nlohmann::ordered_json summary(const Simulation& s, double wall, std::int64_t fi
   j["damping_energy"] = e.damping;
   j["discrete_energy"] = e.discrete;
   j["joint_energy"] = e.joint;
+  if (s.joints().size() > 0) j["joint_gap"] = s.joints().largest_gap(s.rigid_bodies());
   j["external_work"] = e.external_work;
   j["total_energy"] = e.total();
   j["energy_ratio"] = e.ratio();
