@@ -1,0 +1,12 @@
+# Writes the .csv files under FOLDER as string literals into the C++ file OUTPUT, with their paths relative to FOLDER.
+file(GLOB_RECURSE files RELATIVE ${FOLDER} ${FOLDER}/*.csv)
+list(SORT files)
+set(text "// made from data/ by cmake/embed_data.cmake\n#include \"body/tables.h\"\n\n")
+string(APPEND text "namespace fabrica::body {\n\nconst std::vector<DataFile>& embedded_data_files() {\n")
+string(APPEND text "  static const std::vector<DataFile> files = {\n")
+foreach(path ${files})
+  file(READ ${FOLDER}/${path} content)
+  string(APPEND text "{\"${path}\", R\"__csv__(${content})__csv__\"},\n")
+endforeach()
+string(APPEND text "  };\n  return files;\n}\n\n}  // namespace fabrica::body\n")
+file(WRITE ${OUTPUT} "${text}")

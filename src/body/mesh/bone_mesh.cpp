@@ -1,0 +1,213 @@
+#include "body/mesh/bone_mesh.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <mutex>
+
+#include "body/mesh/bone_tables.h"
+#include "body/mesh/overlay.h"
+#include "body/mesh/polish.h"
+#include "body/mesh/quality.h"
+#include "body/mesh/untangle.h"
+
+namespace fabrica::body {
+namespace {
+
+// mean length of a brick's edges along each of its directions
+std::array<float, 3> edge_lengths(const Corners& x) {
+  const int low[3][4] = {{0, 3, 4, 7}, {0, 1, 4, 5}, {0, 1, 2, 3}},
+            high[3][4] = {{1, 2, 5, 6}, {3, 2, 7, 6}, {4, 5, 6, 7}};
+  std::array<float, 3> lengths{};
+  for (int d = 0; d < 3; ++d)
+    for (int e = 0; e < 4; ++e) lengths[d] += float(0.25 * norm(x[high[d][e]] - x[low[d][e]]));
+  return lengths;
+}
+
+double solid_volume(const BoneMesh& mesh) {
+  double volume = 0;
+  for (const Brick& brick : mesh.bricks) volume += volume_of(corners_of(mesh.nodes, brick));
+  return volume;
+}
+
+double area_of(const BoneMesh& mesh) {
+  double area = 0;
+  for (const Quad& q : mesh.surface)
+    area +=
+        0.5 * norm(cross(mesh.nodes[q[2]] - mesh.nodes[q[0]], mesh.nodes[q[3]] - mesh.nodes[q[1]]));
+  return area;
+}
+
+UntangleProblem problem_of(const BoneMesh& mesh, const DistanceField& field, double h) {
+  UntangleProblem problem;
+  problem.bricks = mesh.bricks;
+  problem.spacing = h;
+  std::vector<bool> on_surface(mesh.nodes.size(), false);
+  for (const Quad& quad : mesh.surface)
+    for (const int n : quad) on_surface[n] = true;
+  for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
+    if (on_surface[n]) problem.surface.push_back({int(n), &field, 0});
+  return problem;
+}
+
+// brings the boundary onto the field; chords cut convex corners, so the surface moves out until the
+// bricks hold the volume
+void fit(BoneMesh& mesh, DistanceField& field, const UntangleProblem& problem, double volume) {
+  for (const double weight : {0.3, 2.0, 10.0, 40.0}) untangle(problem, mesh.nodes, weight, 40);
+  const double table_offset = field.offset;
+  for (int pass = 0; pass < 3; ++pass) {
+    const double missing = volume - solid_volume(mesh);
+    field.offset += std::clamp(missing / area_of(mesh), -0.5, 0.5);
+    untangle(problem, mesh.nodes, 100, 40);
+  }
+  const MeshReport now = measure(mesh);
+  if (now.min_scaled_jacobian < 0.45) {
+    PolishOptions options;
+    options.size = 0.3 * problem.spacing;
+    polish(problem, mesh.nodes, options);
+  }
+  field.offset = table_offset;
+}
+
+BoneMesh overlay_mesh(const BoneRecipe& recipe, BoneShape& shape, double h) {
+  const Point shifts[] = {
+      {0, 0, 0}, {0.25, 0.25, 0.25}, {0.5, 0, 0.25}, {0, 0.5, 0.5}, {0.5, 0.5, 0}};
+  for (const double growth :
+       {recipe.growth, recipe.growth + 0.1, recipe.growth - 0.1, recipe.growth + 0.2})
+    for (const Point& shift : shifts) {
+      CellGrid grid = rasterise(shape.field, h, std::max(0.0, growth) * h, shift);
+      if (!repair(grid)) continue;
+      BoneMesh mesh = bricks_of(grid);
+      if (mesh.bricks.empty()) continue;
+      if (recipe.euler && euler_number(mesh.surface) != *recipe.euler) continue;
+      UntangleProblem problem = problem_of(mesh, shape.field, h);
+      problem.target.assign(mesh.bricks.size(), {float(h), float(h), float(h)});
+      fit(mesh, shape.field, problem, shape.table_volume);
+      return mesh;
+    }
+  throw BodyError(fmt::format("{}: no grid of {} mm gives the boundary the Euler number {}",
+                              recipe.name, h, recipe.euler.value_or(0)));
+}
+
+BoneMesh loft_mesh(const BoneRecipe& recipe, BoneShape& shape, double h, Resolution resolution) {
+  BoneMesh mesh = shape.loft->bricks(recipe.core[std::size_t(resolution)], h);
+  UntangleProblem problem = problem_of(mesh, shape.field, 0.5 * h);
+  for (const Brick& brick : mesh.bricks)
+    problem.target.push_back(edge_lengths(corners_of(mesh.nodes, brick)));
+  fit(mesh, shape.field, problem,
+      shape.table_volume > 0 ? shape.table_volume : shape.field.volume());
+  return mesh;
+}
+
+// what every mesh must reach; throws BodyError with the first figure that fails
+void check_gates(const MeshReport& r, Resolution resolution) {
+  constexpr double least_jacobian = 0.30, least_p1 = 0.42, volume_tolerance = 0.10;
+  const double most_error = resolution == Resolution::coarse ? 1.5 : 0.8;  // [mm]
+  const auto refuse = [&](const std::string& what) {
+    throw BodyError(fmt::format("{}, after {}: {}", r.name, r.maker, what));
+  };
+  if (r.min_scaled_jacobian < least_jacobian)
+    refuse(fmt::format("a brick has the scaled Jacobian {:.3f}, at least {} is needed",
+                       r.min_scaled_jacobian, least_jacobian));
+  if (r.p1_scaled_jacobian < least_p1)
+    refuse(fmt::format("1 % of the bricks have a scaled Jacobian below {:.3f}, {} is needed",
+                       r.p1_scaled_jacobian, least_p1));
+  if (r.euler != r.expected_euler)
+    refuse(fmt::format("the boundary has the Euler number {}, the bone has {}", r.euler,
+                       r.expected_euler));
+  if (r.table_volume > 0 && std::abs(r.volume / r.table_volume - 1) > volume_tolerance)
+    refuse(fmt::format("the volume is {:.2f} cm3, the table says {:.2f}", r.volume / 1000,
+                       r.table_volume / 1000));
+  if (r.error_mean > most_error)
+    refuse(fmt::format("the surface is {:.2f} mm off on average, {} mm is allowed", r.error_mean,
+                       most_error));
+}
+
+struct Made {
+  BoneMesh mesh;
+  MeshReport report;
+};
+
+Made make(const std::string& name, Resolution resolution) {
+  const auto start = std::chrono::steady_clock::now();
+  const BoneRecipe& recipe = bone_recipe(name);
+  const double h = recipe.spacing(resolution);
+  BoneShape shape =
+      bone_shape(name, std::clamp(h / 5, 0.4, 1.2), recipe.maker == "loft" ? 4.0 : 1.3 * h + 2);
+  Made made;
+  made.mesh = recipe.maker == "loft" ? loft_mesh(recipe, shape, h, resolution)
+                                     : overlay_mesh(recipe, shape, h);
+  made.mesh.name = name;
+  made.mesh.resolution = resolution;
+  made.report = measure(made.mesh);
+  made.report.maker = recipe.maker;
+  made.report.expected_euler = recipe.euler.value_or(made.report.euler);
+  made.report.table_volume = shape.table_volume;
+  const SurfaceError error = surface_error(made.mesh, shape.field);
+  made.report.error_mean = error.mean;
+  made.report.error_p95 = error.p95;
+  made.report.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  check_gates(made.report, resolution);
+  return made;
+}
+
+// each bone is made once at unit scale; scaling moves its nodes
+const Made& made(const std::string& name, Resolution resolution) {
+  static std::map<std::pair<std::string, Resolution>, Made> cache;
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
+  auto [at, is_new] = cache.try_emplace({name, resolution});
+  if (is_new) try {
+      at->second = make(name, resolution);
+    } catch (...) {
+      cache.erase(at);
+      throw;
+    }
+  return at->second;
+}
+
+}  // namespace
+
+BoneMesh mesh_bone(const BoneRequest& request) {
+  BoneMesh mesh = made(request.name, request.resolution).mesh;
+  mesh.scale = request.scale;
+  for (Point& p : mesh.nodes)
+    p = {p.x * request.scale.x, p.y * request.scale.y, p.z * request.scale.z};
+  return mesh;
+}
+
+MeshReport report(const BoneMesh& mesh) {
+  const MeshReport& unit = made(mesh.name, mesh.resolution).report;
+  MeshReport report = measure(mesh);
+  report.maker = unit.maker;
+  report.expected_euler = unit.expected_euler;
+  report.table_volume = unit.table_volume * mesh.scale.x * mesh.scale.y * mesh.scale.z;
+  const double scale = std::cbrt(mesh.scale.x * mesh.scale.y * mesh.scale.z);
+  report.error_mean = unit.error_mean * scale;
+  report.error_p95 = unit.error_p95 * scale;
+  report.seconds = unit.seconds;
+  return report;
+}
+
+const std::vector<std::string>& bone_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> list;
+    for (const BoneRecipe& recipe : bone_recipes()) list.push_back(recipe.name);
+    return list;
+  }();
+  return names;
+}
+
+BoneMesh mirrored(const BoneMesh& mesh) {
+  BoneMesh other = mesh;
+  for (Point& p : other.nodes) p.y = -p.y;
+  for (Brick& b : other.bricks) b = {b[3], b[2], b[1], b[0], b[7], b[6], b[5], b[4]};
+  for (Quad& q : other.surface) q = {q[3], q[2], q[1], q[0]};
+  return other;
+}
+
+}  // namespace fabrica::body

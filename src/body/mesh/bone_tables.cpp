@@ -1,0 +1,196 @@
+#include "body/mesh/bone_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/lane_math.h"
+#include "body/tables.h"
+
+namespace fabrica::body {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr int contour_harmonics = 6;
+constexpr int contour_points = 72;
+
+std::string path_of(const std::string& file) { return "anatomy/bones/" + file + ".csv"; }
+
+std::vector<Slice> read_slices(const std::string& bone) {
+  const Table table(path_of(bone + "_stack"));
+  std::vector<Slice> slices;
+  for (int row = 0; row < table.rows(); ++row) {
+    const double height = table.number(row, "height");
+    if (slices.empty() || height != slices.back().height) slices.push_back({height, {}});
+    std::vector<std::array<double, 2>> loop(contour_points, {0, 0});
+    for (int k = -contour_harmonics; k <= contour_harmonics; ++k) {
+      const double re = table.number(row, fmt::format("re{}", k)),
+                   im = table.number(row, fmt::format("im{}", k));
+      for (int m = 0; m < contour_points; ++m) {
+        const double t = 2 * pi * k * m / contour_points, c = cos(t), s = sin(t);
+        loop[m][0] += re * c - im * s;
+        loop[m][1] += re * s + im * c;
+      }
+    }
+    slices.back().loops.push_back(std::move(loop));
+  }
+  return slices;
+}
+
+Point point(const Table& table, int row, const char* prefix) {
+  const std::string p = prefix;
+  return {table.number(row, p + "x"), table.number(row, p + "y"), table.number(row, p + "z")};
+}
+
+std::vector<LoftStation> read_sections(const std::string& file, const std::string& piece) {
+  const Table table(path_of(file));
+  std::vector<LoftStation> stations;
+  for (int row = 0; row < table.rows(); ++row) {
+    if (table.text(row, "piece") != piece) continue;
+    LoftStation s;
+    s.c = point(table, row, "c");
+    s.n = point(table, row, "n");
+    s.e1 = point(table, row, "e1");
+    s.r0 = table.number(row, "r0");
+    for (int k = 1; k <= loft_harmonics; ++k) {
+      s.cosine[k - 1] = table.number(row, fmt::format("c{}", k));
+      s.sine[k - 1] = table.number(row, fmt::format("s{}", k));
+    }
+    stations.push_back(s);
+  }
+  return stations;
+}
+
+// costal cartilages 8 to 10: ellipses, a along the body's length
+std::vector<LoftStation> read_ellipses(const std::string& piece) {
+  const Table table(path_of("costal_cartilage8_10_loft"));
+  std::vector<LoftStation> stations;
+  for (int row = 0; row < table.rows(); ++row) {
+    if (table.text(row, "piece") != piece) continue;
+    LoftStation s;
+    s.c = point(table, row, "c");
+    const double a = table.number(row, "a"), b = table.number(row, "b");
+    s.r0 = 0.5 * (a + b);
+    s.cosine[1] = 0.5 * (a - b);
+    stations.push_back(s);
+  }
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    const Point along =
+        stations[std::min(i + 1, stations.size() - 1)].c - stations[i > 0 ? i - 1 : 0].c;
+    LoftStation& s = stations[i];
+    s.n = (1 / norm(along)) * along;
+    const Point up = Point{0, 0, 1} - s.n.z * s.n;
+    s.e1 = (1 / norm(up)) * up;
+  }
+  return stations;
+}
+
+std::vector<LoftStation> read_stations(const std::string& bone) {
+  const auto starts = [&](const char* prefix) { return bone.rfind(prefix, 0) == 0; };
+  if (bone == "costal_cartilage8" || bone == "costal_cartilage9" || bone == "costal_cartilage10")
+    return read_ellipses(bone);
+  if (starts("metacarpal") || starts("hand_phalanx")) return read_sections("hand_rays_loft", bone);
+  if (starts("metatarsal") || starts("foot_phalanx")) return read_sections("foot_rays_loft", bone);
+  if (bone == "fibula") return read_sections("fibula_loft", "shaft");
+  return read_sections(bone + "_loft", "main");
+}
+
+struct IndexRow {
+  double volume = 0;  // [mm3]
+  Axes axes;
+};
+
+IndexRow index_row(const std::string& bone) {
+  const Table table(path_of("index"));
+  IndexRow result;
+  for (int row = 0; row < table.rows(); ++row) {
+    if (table.text(row, "bone") != bone) continue;
+    result.volume = 1000 * table.number(row, "volume");
+    if (!table.text(row, "nx").empty()) {
+      result.axes.n = point(table, row, "n");
+      result.axes.e1 = point(table, row, "e1");
+      result.axes.e2 = cross(result.axes.n, result.axes.e1);
+    }
+  }
+  return result;
+}
+
+// the outward offset for which the field holds the volume: the volume grows with the offset by the
+// surface's area
+void match_volume(DistanceField& field, double volume) {
+  constexpr double most = 1.0;  // [mm]
+  double low = -most, high = most;
+  for (int i = 0; i < 12; ++i) {
+    field.offset = 0.5 * (low + high);
+    (field.volume() < volume ? low : high) = field.offset;
+  }
+}
+
+int letters_apart(const std::string& a, const std::string& b) {  // Levenshtein
+  std::vector<int> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = int(j);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    int diagonal = row[0];
+    row[0] = int(i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const int above = row[j];
+      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] != b[j - 1])});
+      diagonal = above;
+    }
+  }
+  return row[b.size()];
+}
+
+}  // namespace
+
+const std::vector<BoneRecipe>& bone_recipes() {
+  static const std::vector<BoneRecipe> recipes = [] {
+    const Table table(path_of("meshing"));
+    std::vector<BoneRecipe> list;
+    for (int row = 0; row < table.rows(); ++row) {
+      BoneRecipe r;
+      r.name = table.text(row, "bone");
+      r.maker = table.text(row, "maker");
+      r.edge = {table.number(row, "coarse"), table.number(row, "standard"),
+                table.number(row, "fine")};
+      r.growth = table.number(row, "growth");
+      if (r.maker == "loft")
+        r.core = {int(table.number(row, "core_coarse")), int(table.number(row, "core_standard")),
+                  int(table.number(row, "core_fine"))};
+      if (!table.text(row, "euler").empty()) r.euler = int(table.number(row, "euler"));
+      list.push_back(r);
+    }
+    return list;
+  }();
+  return recipes;
+}
+
+const BoneRecipe& bone_recipe(const std::string& name) {
+  const BoneRecipe* nearest = &bone_recipes().front();
+  for (const BoneRecipe& r : bone_recipes()) {
+    if (r.name == name) return r;
+    if (letters_apart(name, r.name) < letters_apart(name, nearest->name)) nearest = &r;
+  }
+  throw BodyError(
+      fmt::format("no bone is called '{}'; the nearest name is '{}'", name, nearest->name));
+}
+
+BoneShape bone_shape(const std::string& name, double grid, double margin) {
+  const IndexRow index = index_row(name);
+  const bool stacked = has_data_file(path_of(name + "_stack")) && bone_recipe(name).maker != "loft";
+  if (stacked) {
+    BoneShape shape{DistanceField::of_slices(read_slices(name), index.axes, grid, margin),
+                    std::nullopt, index.volume};
+    match_volume(shape.field, index.volume);
+    return shape;
+  }
+  Loft loft(read_stations(name), 0.8);
+  BoneShape shape{DistanceField::of_triangles(loft.surface(48, 2.0), grid, margin), loft,
+                  index.volume};
+  if (index.volume > 0) match_volume(shape.field, index.volume);
+  return shape;
+}
+
+}  // namespace fabrica::body

@@ -1,0 +1,38 @@
+#pragma once
+// The tables of data/anatomy/bones as shapes: which bones there are, how each is meshed, its
+// surface as a distance field.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "body/mesh/distance_field.h"
+#include "body/mesh/loft.h"
+
+namespace fabrica::body {
+
+// a row of data/anatomy/bones/meshing.csv
+struct BoneRecipe {
+  std::string name;
+  std::string maker;             // "overlay" or "loft"
+  std::array<double, 3> edge{};  // [mm] of the bricks by resolution
+  double growth = 0;             // of the field before cells are chosen, in edges
+  std::array<int, 3> core{};     // bricks along the side of a loft's core, by resolution
+  std::optional<int> euler;      // of the boundary
+  double spacing(Resolution r) const { return edge[std::size_t(r)]; }
+};
+
+const std::vector<BoneRecipe>& bone_recipes();
+// throws BodyError with the nearest known name
+const BoneRecipe& bone_recipe(const std::string& name);
+
+struct BoneShape {
+  DistanceField field;  // zero level: the surface of the table, moved outward so that it holds the
+                        // table's volume
+  std::optional<Loft> loft;
+  double table_volume = 0;  // [mm3]; 0: none stated
+};
+
+// grid: spacing of the field [mm]; margin around the surface [mm]
+BoneShape bone_shape(const std::string& name, double grid, double margin);
+
+}  // namespace fabrica::body

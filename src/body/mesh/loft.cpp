@@ -1,0 +1,201 @@
+#include "body/mesh/loft.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/lane_math.h"
+
+namespace fabrica::body {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double core_size = 0.52;  // half width of the O-grid's core in radii
+constexpr double last_section =
+    0.6;  // height of the last section of bricks in a dome, in dome heights
+
+Point unit(const Point& p) { return (1 / norm(p)) * p; }
+
+double radius(const LoftStation& section, double phi) {
+  double r = section.r0;
+  for (int k = 1; k <= loft_harmonics; ++k)
+    r += section.cosine[k - 1] * cos(k * phi) + section.sine[k - 1] * sin(k * phi);
+  return std::max(r, 0.2 * section.r0);
+}
+
+// direction of the longer half width and the two half widths, from the second harmonic
+struct Shape {
+  double angle, a, b;
+};
+
+Shape shape_of(const LoftStation& s, double before) {
+  const double flat = std::sqrt(s.cosine[1] * s.cosine[1] + s.sine[1] * s.sine[1]);
+  double angle = 0.5 * std::atan2(s.sine[1], s.cosine[1]);
+  // a square core looks the same after a quarter turn: turn as little as possible from the section
+  // before
+  const double turn = angle - before;
+  const double rest = turn - 0.5 * pi * std::round(turn / (0.5 * pi));
+  angle = before + rest * std::min(1.0, flat / (0.15 * s.r0));
+  const double along = cos(2 * angle) * s.cosine[1] + sin(2 * angle) * s.sine[1];
+  return {angle, std::max(s.r0 + along, 0.3 * s.r0), std::max(s.r0 - along, 0.3 * s.r0)};
+}
+
+// points of the O-grid in a unit disc: (angle in the sense of an even section, fraction of the
+// radius)
+struct DiscPoint {
+  double psi, rho;
+};
+
+struct Disc {
+  std::vector<DiscPoint> points;
+  std::vector<Quad> quads;
+};
+
+Disc o_grid(int core) {
+  Disc disc;
+  const int row = core + 1;
+  for (int j = 0; j < row; ++j)
+    for (int i = 0; i < row; ++i) {
+      const double x = 2.0 * i / core - 1, y = 2.0 * j / core - 1;
+      // between a square and a disc, so that the corners of the core keep obtuse angles small
+      const double most = std::max(std::abs(x), std::abs(y)), length = std::sqrt(x * x + y * y);
+      const double rho = length > 0 ? core_size * most * (0.45 + 0.55 * length / most) : 0;
+      disc.points.push_back({std::atan2(y, x), rho});
+    }
+  for (int j = 0; j < core; ++j)
+    for (int i = 0; i < core; ++i)
+      disc.quads.push_back(
+          {j * row + i, j * row + i + 1, (j + 1) * row + i + 1, (j + 1) * row + i});
+  std::vector<int> rim;  // counter-clockwise from the first corner
+  for (int i = 0; i < core; ++i) rim.push_back(i);
+  for (int j = 0; j < core; ++j) rim.push_back(j * row + core);
+  for (int i = core; i > 0; --i) rim.push_back(core * row + i);
+  for (int j = core; j > 0; --j) rim.push_back(j * row);
+  const int first = int(disc.points.size()), count = int(rim.size());
+  for (int m = 0; m < count; ++m) disc.points.push_back({disc.points[rim[m]].psi, 1.0});
+  for (int m = 0; m < count; ++m) {
+    const int next = (m + 1) % count;
+    disc.quads.push_back({rim[m], first + m, first + next, rim[next]});
+  }
+  return disc;
+}
+
+}  // namespace
+
+Point point_of(const LoftStation& section, double phi, double rho) {
+  const double r = rho * radius(section, phi);
+  return section.c + (r * cos(phi)) * section.e1 + (r * sin(phi)) * cross(section.n, section.e1);
+}
+
+Loft::Loft(std::vector<LoftStation> stations, double dome)
+    : stations_(std::move(stations)), dome_(dome) {
+  stations_.front().s = 0;
+  for (std::size_t i = 1; i < stations_.size(); ++i)
+    stations_[i].s = stations_[i - 1].s + norm(stations_[i].c - stations_[i - 1].c);
+}
+
+LoftStation Loft::section(double s) const {
+  std::size_t i = 0;
+  while (i + 2 < stations_.size() && stations_[i + 1].s < s) ++i;
+  const LoftStation &a = stations_[i], &b = stations_[i + 1];
+  const double width = b.s - a.s, t = std::clamp((s - a.s) / width, 0.0, 1.0);
+  // cubic Hermite centre-line with slopes from the neighbours
+  const auto slope = [&](std::size_t k) {
+    const std::size_t low = k > 0 ? k - 1 : 0, high = std::min(k + 1, stations_.size() - 1);
+    return (1 / (stations_[high].s - stations_[low].s)) * (stations_[high].c - stations_[low].c);
+  };
+  const double t2 = t * t, t3 = t2 * t;
+  LoftStation r;
+  r.s = s;
+  r.c = (2 * t3 - 3 * t2 + 1) * a.c + ((t3 - 2 * t2 + t) * width) * slope(i) +
+        (3 * t2 - 2 * t3) * b.c + ((t3 - t2) * width) * slope(i + 1);
+  r.n = unit((1 - t) * a.n + t * b.n);
+  const Point e = (1 - t) * a.e1 + t * b.e1;
+  r.e1 = unit(e - dot(e, r.n) * r.n);
+  r.r0 = (1 - t) * a.r0 + t * b.r0;
+  for (int k = 0; k < loft_harmonics; ++k) {
+    r.cosine[k] = (1 - t) * a.cosine[k] + t * b.cosine[k];
+    r.sine[k] = (1 - t) * a.sine[k] + t * b.sine[k];
+  }
+  return r;
+}
+
+TriangleSurface Loft::surface(int around, double step) const {
+  TriangleSurface result;
+  const auto add_ring = [&](const LoftStation& section, double rho, double height) {
+    for (int m = 0; m < around; ++m)
+      result.nodes.push_back(point_of(section, 2 * pi * m / around, rho) + height * section.n);
+  };
+  const auto dome_ring = [&](const LoftStation& section, double latitude, double sign) {
+    add_ring(section, cos(latitude), sign * dome_ * section.r0 * sin(latitude));
+  };
+  constexpr int dome_rings = 6;
+  const LoftStation first = section(0), last = section(length());
+  for (int m = dome_rings - 1; m > 0; --m) dome_ring(first, 0.5 * pi * m / dome_rings, -1);
+  const int sections = std::max(2, int(std::ceil(length() / step)));
+  for (int i = 0; i <= sections; ++i) add_ring(section(length() * i / sections), 1, 0);
+  for (int m = 1; m < dome_rings; ++m) dome_ring(last, 0.5 * pi * m / dome_rings, 1);
+
+  const int rings = int(result.nodes.size()) / around;
+  for (int i = 0; i + 1 < rings; ++i)
+    for (int m = 0; m < around; ++m) {
+      const int a = i * around + m, b = i * around + (m + 1) % around;
+      result.triangles.push_back({a, b, b + around});
+      result.triangles.push_back({a, b + around, a + around});
+    }
+  const int low = int(result.nodes.size()), high = low + 1;
+  result.nodes.push_back(first.c - (dome_ * first.r0) * first.n);
+  result.nodes.push_back(last.c + (dome_ * last.r0) * last.n);
+  for (int m = 0; m < around; ++m) {
+    result.triangles.push_back({low, (m + 1) % around, m});
+    result.triangles.push_back(
+        {high, (rings - 1) * around + m, (rings - 1) * around + (m + 1) % around});
+  }
+  return result;
+}
+
+BoneMesh Loft::bricks(int core, double h) const {
+  const Disc disc = o_grid(core);
+  BoneMesh mesh;
+  double angle = 0;
+  {  // start from the most flattened section, so that the core follows the flat faces
+    double flattest = 0;
+    for (const LoftStation& s : stations_) {
+      const double flat = std::sqrt(s.cosine[1] * s.cosine[1] + s.sine[1] * s.sine[1]) / s.r0;
+      if (flat > flattest) flattest = flat, angle = 0.5 * std::atan2(s.sine[1], s.cosine[1]);
+    }
+  }
+  const auto add_section = [&](const LoftStation& section, double cap) {
+    const Shape shape = shape_of(section, angle);
+    angle = shape.angle;
+    const double scale = cap == 0 ? 1 : std::sqrt(1 - last_section * last_section);
+    for (const DiscPoint& p : disc.points) {
+      const double phi = shape.angle + std::atan2(std::sqrt(shape.b) * sin(p.psi),
+                                                  std::sqrt(shape.a) * cos(p.psi));
+      const double rho = scale * p.rho;
+      const double height = cap * dome_ * section.r0 * std::sqrt(1 - rho * rho);
+      mesh.nodes.push_back(point_of(section, phi, rho) + height * section.n);
+    }
+  };
+  // the first and last sections stand inside the domes, the others evenly between them
+  const LoftStation first = section(0), last = section(length());
+  const double before = last_section * dome_ * first.r0, after = last_section * dome_ * last.r0;
+  const double span = before + length() + after;
+  const int layers = std::max(2, int(std::lround(span / h)));
+  add_section(first, -1);
+  for (int i = 1; i < layers; ++i)
+    add_section(section(std::clamp(span * i / layers - before, 0.0, length())), 0);
+  add_section(last, 1);
+  const int per_section = int(disc.points.size());
+  for (int i = 0; i < layers; ++i)
+    for (const Quad& q : disc.quads) {
+      const int low = i * per_section, high = low + per_section;
+      mesh.bricks.push_back({low + q[0], low + q[1], low + q[2], low + q[3], high + q[0],
+                             high + q[1], high + q[2], high + q[3]});
+    }
+  mesh.brick_layer.assign(mesh.bricks.size(), 0);
+  mesh.surface = boundary_quads(mesh.bricks);
+  return mesh;
+}
+
+}  // namespace fabrica::body

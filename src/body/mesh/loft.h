@@ -1,0 +1,44 @@
+#pragma once
+// A bone as sections along a centre-line: r(phi) = r0 + sum_k c_k cos k phi + s_k sin k phi in the
+// plane through c with normal n, phi from e1 towards n x e1. The ends close as domes: ellipsoids
+// over the end sections.
+#include <array>
+#include <vector>
+
+#include "body/mesh/distance_field.h"
+#include "body/mesh/quality.h"
+
+namespace fabrica::body {
+
+inline constexpr int loft_harmonics = 6;
+
+struct LoftStation {
+  Point c, n, e1;
+  double r0 = 1;
+  std::array<double, loft_harmonics> cosine{}, sine{};
+  double s = 0;  // [mm] along the centre-line
+};
+
+class Loft {
+ public:
+  // stations in order; dome: height of the end domes in mean radii of the end sections
+  Loft(std::vector<LoftStation> stations, double dome);
+
+  double length() const { return stations_.back().s; }
+  // section at s [mm] in [0, length]: cubic centre-line, harmonics linear
+  LoftStation section(double s) const;
+  // closed surface with `around` points a section, sections `step` mm apart
+  TriangleSurface surface(int around, double step) const;
+
+  // O-grid bricks: a core of core x core squares inside one ring, sections h apart, closed domes.
+  BoneMesh bricks(int core, double h) const;
+
+ private:
+  std::vector<LoftStation> stations_;
+  double dome_;
+};
+
+// the point of a section at angle phi and fraction rho of the radius
+Point point_of(const LoftStation& section, double phi, double rho);
+
+}  // namespace fabrica::body

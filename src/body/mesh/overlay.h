@@ -1,0 +1,40 @@
+#pragma once
+// Bricks of a solid cut from a background grid: a cell belongs to the solid when most of its 4^3
+// samples lie inside the field grown outward by `growth` (which closes the holes that a coarse grid
+// would make in thin plates). The cells are then repaired until their boundary is a manifold, so
+// that no two bricks meet only along an edge or at a corner.
+#include <vector>
+
+#include "body/mesh/distance_field.h"
+#include "body/mesh/quality.h"
+
+namespace fabrica::body {
+
+struct CellGrid {
+  Axes axes;
+  Point origin;  // of cell (0, 0, 0), in grid axes
+  double spacing = 1;
+  std::array<int, 3> count{};
+  std::vector<unsigned char> inside;
+  std::vector<float> fraction;  // of the cell's samples that are inside
+
+  int index(int i, int j, int k) const { return (k * count[1] + j) * count[0] + i; }
+};
+
+// shift: of the grid, in cells
+CellGrid rasterise(const DistanceField& field, double spacing, double growth, const Point& shift);
+
+// Flips the cheapest cells until around each grid vertex the cells inside and those outside are
+// each connected through faces; keeps the largest piece and fills closed cavities. False when no
+// repair was found.
+bool repair(CellGrid& grid);
+
+// nodes and bricks of the cells inside
+BoneMesh bricks_of(const CellGrid& grid);
+
+// A layer of bricks behind the whole boundary: each boundary node gets a twin inside, at `depth` of
+// the way of one spacing along the mean direction of its bricks' centres. New bricks are of layer
+// 1; returns (surface node, twin) pairs.
+std::vector<std::array<int, 2>> add_pillow(BoneMesh& mesh, double depth);
+
+}  // namespace fabrica::body

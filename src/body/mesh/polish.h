@@ -1,0 +1,20 @@
+#pragma once
+// The local stage: nodes of the worst bricks try small random moves and keep those that lower
+//   sum exp(-14 (s - s_w)) + sum exp(-14 (L / L_w - 1)) + w (phi / h)^2 (1)
+// over the bricks around the node; s scaled Jacobian, L size, both with a wish. The random numbers
+// are seeded by the mesh, so that the result depends on the input alone.
+#include "body/mesh/untangle.h"
+
+namespace fabrica::body {
+
+struct PolishOptions {
+  double jacobian = 0.45;  // s_w
+  double size = 1;         // [mm] L_w
+  double weight = 60;      // w
+  int sweeps = 30;
+};
+
+void polish(const UntangleProblem& problem, std::vector<Point>& nodes,
+            const PolishOptions& options);
+
+}  // namespace fabrica::body

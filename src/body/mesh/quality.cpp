@@ -1,0 +1,143 @@
+#include "body/mesh/quality.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace fabrica::body {
+
+Corners corners_of(const std::vector<Point>& nodes, const Brick& brick) {
+  Corners corners;
+  for (int c = 0; c < 8; ++c) corners[c] = nodes[brick[c]];
+  return corners;
+}
+
+double scaled_jacobian(const Corners& corners) {
+  double least = 1;
+  for (int c = 0; c < 8; ++c) {
+    const auto& next = corner_neighbours[c];
+    const Point a = corners[next[0]] - corners[c], b = corners[next[1]] - corners[c],
+                d = corners[next[2]] - corners[c];
+    const double lengths = std::sqrt(dot(a, a) * dot(b, b) * dot(d, d));
+    least = std::min(least, lengths > 0 ? dot(a, cross(b, d)) / lengths : -1.0);
+  }
+  return least;
+}
+
+double volume_of(const Corners& corners) {
+  // the divergence theorem over bilinear faces, each exactly the mean of its two triangulations
+  double six_times = 0;
+  for (const auto& face : brick_faces) {
+    const Point &a = corners[face[0]], &b = corners[face[1]], &c = corners[face[2]],
+                &d = corners[face[3]];
+    six_times += 0.5 * (dot(a, cross(b, c)) + dot(a, cross(c, d)) + dot(a, cross(b, d)) +
+                        dot(b, cross(c, d)));
+  }
+  return six_times / 6;
+}
+
+double size_of(const Corners& corners) {
+  double largest = 0;
+  for (const auto& face : brick_faces) {
+    const Point diagonals =
+        cross(corners[face[2]] - corners[face[0]], corners[face[3]] - corners[face[1]]);
+    largest = std::max(largest, 0.5 * norm(diagonals));
+  }
+  return largest > 0 ? volume_of(corners) / largest : 0;
+}
+
+std::vector<Quad> boundary_quads(const std::vector<Brick>& bricks) {
+  struct Face {
+    Quad sorted, quad;
+    int order;
+  };
+  std::vector<Face> faces;
+  faces.reserve(bricks.size() * 6);
+  for (const Brick& brick : bricks)
+    for (const auto& f : brick_faces) {
+      const Quad quad{brick[f[0]], brick[f[1]], brick[f[2]], brick[f[3]]};
+      Quad sorted = quad;
+      std::sort(sorted.begin(), sorted.end());
+      faces.push_back({sorted, quad, int(faces.size())});
+    }
+  std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
+    return std::tie(a.sorted, a.order) < std::tie(b.sorted, b.order);
+  });
+  std::vector<Face> single;
+  for (std::size_t i = 0; i < faces.size();) {
+    std::size_t j = i + 1;
+    while (j < faces.size() && faces[j].sorted == faces[i].sorted) ++j;
+    if (j == i + 1) single.push_back(faces[i]);
+    i = j;
+  }
+  std::sort(single.begin(), single.end(),
+            [](const Face& a, const Face& b) { return a.order < b.order; });
+  std::vector<Quad> quads;
+  for (const Face& face : single) quads.push_back(face.quad);
+  return quads;
+}
+
+int euler_number(const std::vector<Quad>& quads) {
+  std::vector<int> nodes;
+  std::vector<std::array<int, 2>> edges;
+  for (const Quad& quad : quads)
+    for (int a = 0; a < 4; ++a) {
+      nodes.push_back(quad[a]);
+      edges.push_back({std::min(quad[a], quad[(a + 1) % 4]), std::max(quad[a], quad[(a + 1) % 4])});
+    }
+  const auto count = [](auto& list) {
+    std::sort(list.begin(), list.end());
+    return int(std::unique(list.begin(), list.end()) - list.begin());
+  };
+  return count(nodes) - count(edges) + int(quads.size());
+}
+
+SurfaceError surface_error(const BoneMesh& mesh, const DistanceField& field) {
+  std::vector<std::pair<double, double>> samples;  // error, area
+  const double places[3] = {1.0 / 6, 0.5, 5.0 / 6};
+  for (const Quad& quad : mesh.surface) {
+    const Point &a = mesh.nodes[quad[0]], &b = mesh.nodes[quad[1]], &c = mesh.nodes[quad[2]],
+                &d = mesh.nodes[quad[3]];
+    const double area = 0.5 * norm(cross(c - a, d - b)) / 9;
+    for (const double u : places)
+      for (const double v : places) {
+        const Point p =
+            ((1 - u) * (1 - v)) * a + (u * (1 - v)) * b + (u * v) * c + ((1 - u) * v) * d;
+        samples.push_back({std::abs(field.value(p) + field.offset), area});
+      }
+  }
+  std::sort(samples.begin(), samples.end());
+  double total = 0, sum = 0;
+  for (const auto& [error, area] : samples) total += area, sum += error * area;
+  SurfaceError result{sum / total, 0};
+  double below = 0;
+  for (const auto& [error, area] : samples) {
+    below += area;
+    result.p95 = error;
+    if (below >= 0.95 * total) break;
+  }
+  return result;
+}
+
+MeshReport measure(const BoneMesh& mesh) {
+  MeshReport report;
+  report.name = mesh.name;
+  report.nodes = int(mesh.nodes.size());
+  report.bricks = int(mesh.bricks.size());
+  report.euler = euler_number(mesh.surface);
+  std::vector<double> jacobians;
+  report.min_size = 1e9;
+  for (const Brick& brick : mesh.bricks) {
+    const Corners corners = corners_of(mesh.nodes, brick);
+    jacobians.push_back(scaled_jacobian(corners));
+    report.min_size = std::min(report.min_size, size_of(corners));
+    report.volume += volume_of(corners);
+  }
+  std::sort(jacobians.begin(), jacobians.end());
+  report.min_scaled_jacobian = jacobians.front();
+  report.p1_scaled_jacobian = jacobians[jacobians.size() / 100];
+  return report;
+}
+
+}  // namespace fabrica::body

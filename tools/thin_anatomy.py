@@ -1,0 +1,173 @@
+#!/usr/bin/env python3
+"""Makes the shipped bone tables from the full ones: tools/thin_anatomy.py FOLDER data/anatomy/bones
+
+FOLDER holds the full tables (index.csv, *_stack.csv, *_loft.csv, skull_vault_sh.csv, cortical_thickness.csv, ...).
+Shipped is the thinned form: contours keep at most 6 harmonics, slices and stations are taken 1.6 spacings apart
+(the nearest ones that exist, first and last always), so that no surface can be recovered finer than 0.5-0.75 mm.
+Only what the mesh makers read is written. The result depends on the input alone.
+"""
+import csv
+import pathlib
+import re
+import sys
+
+HARMONICS = 6
+SPACING = 1.6
+NOTICE = ("# Dimensions measured from BodyParts3D, (c) The Database Center for Life Science, CC BY-SA 4.0; changes: scaled"
+          " per region, reduced to cross-section fits, thinned. See LICENSE in data/anatomy.\n")
+# bones meshed from their lofts (no stack, or a shape that sections describe better)
+LOFTS = re.compile(r"rib\d+|costal_cartilage\d+|manubrium|sternum_body|xiphoid|fibula|hand_rays|foot_rays")
+
+
+def read(path):
+    """(comment lines, list of row dictionaries) of a table"""
+    lines = path.read_text(encoding="utf-8").splitlines()
+    comments = [line for line in lines if line.startswith("#")]
+    return comments, list(csv.DictReader(line for line in lines if not line.startswith("#")))
+
+
+def write(path, comment, columns, rows, notice=NOTICE):
+    with open(path, "w", encoding="utf-8", newline="") as file:
+        file.write(notice + comment)
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(columns)
+        writer.writerows(rows)
+
+
+def kept(count):
+    """indices of the slices that stay: the nearest to multiples of SPACING, with both ends"""
+    steps = max(min(count - 1, 4), round((count - 1) / SPACING))
+    return sorted({round(i * (count - 1) / steps) for i in range(steps + 1)})
+
+
+def number(text):
+    return f"{float(text):.2f}".rstrip("0").rstrip(".")
+
+
+def vector(text, name):
+    return [number(v) for v in re.search(name + r"=\(([^)]*)\)", text)[1].split()]
+
+
+def thin_stack(source, target):
+    comments, rows = read(source)
+    heights = sorted({float(row["s_mm"]) for row in rows})
+    keep = {heights[i] for i in kept(len(heights))}
+    orders = range(-HARMONICS, HARMONICS + 1)
+    columns = ["height", "sign"] + [f"{part}{k}" for k in orders for part in ("re", "im")]
+    out = [[number(row["s_mm"]), int(row["sign"])] + [number(row[f"{part}{k}"]) for k in orders for part in ("re", "im")]
+           for row in rows if float(row["s_mm"]) in keep]
+    write(target, "# closed contours z(t) = sum_k (re_k + i im_k) exp(i k t) of parallel slices [mm]; sign +1 outer, -1 hole\n",
+          columns, out)
+    return vector(comments[0], "normal n"), vector(comments[0], "e1")
+
+
+def unfolded(stations):
+    """stations of a centre-line that does not run back on itself: where the given one does (two costal cartilages), the
+    sections across the mean direction, in order along it, none closer than 3 mm to the one before"""
+    def part(row, name):
+        return [float(row[name + axis + suffix]) for axis, suffix in zip("xyz", ["_mm"] * 3 if name == "c" else [""] * 3)]
+
+    def dot(a, b):
+        return sum(x * y for x, y in zip(a, b))
+
+    normals = [part(row, "n") for row in stations]
+    if all(dot(a, b) > 0 for a, b in zip(normals, normals[1:])):
+        return stations
+    axis = normals[0]
+    for _ in range(3):
+        total = [sum(n[i] if dot(n, axis) > 0 else -n[i] for n in normals) for i in range(3)]
+        axis = [v / dot(total, total) ** 0.5 for v in total]
+    result = []
+    for row, n in sorted(zip(stations, normals), key=lambda pair: dot(part(pair[0], "c"), axis)):
+        if abs(dot(n, axis)) < 0.85 or (result and dot(part(row, "c"), axis) - dot(part(result[-1], "c"), axis) < 3):
+            continue
+        if dot(n, axis) < 0:  # seen from the other side phi runs backwards
+            row = {k: str(-float(v)) if re.fullmatch(r"n[xyz]|s\d_mm", k) else v for k, v in row.items()}
+        result.append(row)
+    return result
+
+
+def thin_loft(source, target):
+    _, rows = read(source)
+    fields = ["cx_mm", "cy_mm", "cz_mm", "nx", "ny", "nz", "e1x", "e1y", "e1z", "r0_mm"]
+    waves = [f"{part}{k}_mm" for k in range(1, HARMONICS + 1) for part in ("c", "s")]
+    pieces = {}
+    for row in rows:
+        pieces.setdefault(row["piece"], []).append(row)
+    out = []
+    for piece, stations in pieces.items():
+        stations = unfolded(stations)
+        for i in kept(len(stations)):
+            row = stations[i]
+            directions = [f"{float(row[f]):.4f}" for f in fields[3:9]]
+            out.append([piece] + [number(row[f]) for f in fields[:3]] + directions +
+                       [number(row["r0_mm"])] + [number(row[w]) for w in waves])
+    write(target, "# sections r(phi) = r0 + sum_k c_k cos k phi + s_k sin k phi in the plane through c with normal n; phi from"
+          " e1 towards n x e1 [mm]\n", ["piece"] + [c.replace("_mm", "") for c in fields + waves], out)
+
+
+def constructed_cartilages(source, target):
+    """elliptical cartilages 8-10 stay as they are: they were constructed, not measured"""
+    _, rows = read(source)
+    out = [[row["piece"]] + [number(row[c]) for c in ("cx_mm", "cy_mm", "cz_mm", "a_mm", "b_mm")] for row in rows]
+    write(target, "", ["piece", "cx", "cy", "cz", "a", "b"], out,
+          "# constructed, not measured: curves from the anterior end of a rib to the cartilage above; elliptical half\n"
+          "# widths a (along the body's length) and b (across) [mm]\n")
+
+
+def vault(source, target):
+    _, rows = read(source)
+    out = [[row["l"], row["m"]] + [f"{float(row[c]):.3f}" for c in ("outer_mm", "inner_am50_mm")] for row in rows
+           if int(row["l"]) <= 8]
+    write(target, "# real orthonormal spherical harmonics of the vault's radius about (8.20, 0, 84.67) in frame head [mm];\n"
+          "# theta from +z, phi from +x to +y, no Condon-Shortley phase, m < 0 sine, m > 0 cosine; outer: external table,\n"
+          "# inner: endocranial surface for literature thickness\n", ["l", "m", "outer", "inner"], out)
+
+
+def thickness(source, target):
+    _, rows = read(source)
+    out = []
+    for row in rows:
+        if row["where"].startswith("fraction"):
+            bone, where = row["bone_or_region"], row["where"].split()[1]
+        elif row["where"] in ("cortex", "total", "layer"):
+            bone, where = row["bone_or_region"], row["where"]
+        else:
+            continue
+        if re.fullmatch(r"[\d.]+", row["value_mm"]):
+            out.append([bone, where, row["value_mm"], row["confidence"]])
+    write(target, "", ["region", "where", "thickness", "source"], out,
+          "# thickness of cortex and layers [mm]; where: a number is the fraction of the length (long bones: 0 distal, 1\n"
+          "# proximal; ribs: 0 head, 1 anterior end; clavicle: 0 sternal). Typical adult values; the source column says whence\n")
+
+
+def index(source, target, planes):
+    _, rows = read(source)
+    out = []
+    for row in rows:
+        n, e1 = planes.get(row["bone"], (["", "", ""], ["", "", ""]))
+        out.append([row["bone"], row["frame"], row["volume_cm3"]] +
+                   [row[c] for c in ("xmin", "ymin", "zmin", "xmax", "ymax", "zmax")] + n + e1)
+    write(target, "# volume [cm3] and box [mm] of the measured bone; slices: normal n, first axis e1 (second n x e1)\n",
+          ["bone", "frame", "volume", "xmin", "ymin", "zmin", "xmax", "ymax", "zmax", "nx", "ny", "nz", "e1x", "e1y", "e1z"], out)
+
+
+def main():
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    source, target = map(pathlib.Path, sys.argv[1:])
+    target.mkdir(parents=True, exist_ok=True)
+    planes = {}
+    for path in sorted(source.glob("*_stack.csv")):
+        planes[path.name.removesuffix("_stack.csv")] = thin_stack(path, target / path.name)
+    for path in sorted(source.glob("*_loft.csv")):
+        if LOFTS.fullmatch(path.name.removesuffix("_loft.csv")):
+            thin_loft(path, target / path.name)
+    constructed_cartilages(source / "costal_cartilage8_10_constructed.csv", target / "costal_cartilage8_10_loft.csv")
+    vault(source / "skull_vault_sh.csv", target / "skull_vault.csv")
+    thickness(source / "cortical_thickness.csv", target / "cortical_thickness.csv")
+    index(source / "index.csv", target / "index.csv", planes)
+
+
+if __name__ == "__main__":
+    main()
