@@ -9,6 +9,7 @@
 #include <mutex>
 
 #include "body/mesh/bone_tables.h"
+#include "body/mesh/cortex.h"
 #include "body/mesh/overlay.h"
 #include "body/mesh/polish.h"
 #include "body/mesh/quality.h"
@@ -55,41 +56,72 @@ UntangleProblem problem_of(const BoneMesh& mesh, const DistanceField& field, dou
 
 // brings the boundary onto the field; chords cut convex corners, so the surface moves out until the
 // bricks hold the volume
-void fit(BoneMesh& mesh, DistanceField& field, const UntangleProblem& problem, double volume) {
+void fit(BoneMesh& mesh, DistanceField& field, const UntangleProblem& problem, double volume,
+         double end_weight, double least_size) {
   for (const double weight : {0.3, 2.0, 10.0, 40.0}) untangle(problem, mesh.nodes, weight, 40);
   const double table_offset = field.offset;
   for (int pass = 0; pass < 3; ++pass) {
     const double missing = volume - solid_volume(mesh);
     field.offset += std::clamp(missing / area_of(mesh), -0.5, 0.5);
-    untangle(problem, mesh.nodes, 100, 40);
+    untangle(problem, mesh.nodes, end_weight, 40);
   }
   const MeshReport now = measure(mesh);
-  if (now.min_scaled_jacobian < 0.45) {
+  if (now.min_scaled_jacobian < 0.45 || now.min_size < least_size) {
     PolishOptions options;
-    options.size = 0.3 * problem.spacing;
+    options.size = least_size;
+    options.weight = 0.5 * end_weight;
     polish(problem, mesh.nodes, options);
   }
   field.offset = table_offset;
 }
 
-BoneMesh overlay_mesh(const BoneRecipe& recipe, BoneShape& shape, double h) {
+// The cells of a bone: the first grid placement and growth that give the boundary the bone's Euler
+// number.
+BoneMesh cells_of(const BoneRecipe& recipe, const BoneShape& shape, double h) {
   const Point shifts[] = {
       {0, 0, 0}, {0.25, 0.25, 0.25}, {0.5, 0, 0.25}, {0, 0.5, 0.5}, {0.5, 0.5, 0}};
-  for (const double growth :
-       {recipe.growth, recipe.growth + 0.1, recipe.growth - 0.1, recipe.growth + 0.2})
+  std::string found;
+  for (const double more : {0.0, 0.1, -0.1, 0.2, 0.3})
     for (const Point& shift : shifts) {
-      CellGrid grid = rasterise(shape.field, h, std::max(0.0, growth) * h, shift);
+      CellGrid grid = rasterise(shape.field, h, std::max(0.0, recipe.growth + more) * h, shift);
       if (!repair(grid)) continue;
       BoneMesh mesh = bricks_of(grid);
-      if (mesh.bricks.empty()) continue;
-      if (recipe.euler && euler_number(mesh.surface) != *recipe.euler) continue;
-      UntangleProblem problem = problem_of(mesh, shape.field, h);
-      problem.target.assign(mesh.bricks.size(), {float(h), float(h), float(h)});
-      fit(mesh, shape.field, problem, shape.table_volume);
-      return mesh;
+      const int euler = euler_number(mesh.surface);
+      if (!mesh.bricks.empty() && euler == recipe.euler.value_or(euler)) return mesh;
+      found += fmt::format(" {}", euler);
     }
-  throw BodyError(fmt::format("{}: no grid of {} mm gives the boundary the Euler number {}",
-                              recipe.name, h, recipe.euler.value_or(0)));
+  throw BodyError(
+      fmt::format("{}: the boundary should have the Euler number {}; grids of {} mm gave{}",
+                  recipe.name, recipe.euler.value_or(0), h, found));
+}
+
+BoneMesh overlay_mesh(const BoneRecipe& recipe, BoneShape& shape, double h) {
+  BoneMesh mesh = cells_of(recipe, shape, h);
+  UntangleProblem problem = problem_of(mesh, shape.field, h);
+  problem.target.assign(mesh.bricks.size(), {float(h), float(h), float(h)});
+  fit(mesh, shape.field, problem, shape.table_volume, 100, 0.3 * h);
+  return mesh;
+}
+
+// The cortex as a layer of bricks of the thickness that the table gives, at least `least` mm.
+BoneMesh solid_cortex_mesh(const BoneRecipe& recipe, BoneShape& shape, double h, double least) {
+  BoneMesh mesh = cells_of(recipe, shape, h);
+  const CortexTable table(recipe.name, shape);
+  const auto thickness = [&](int node) {
+    return std::max(least, table.at(mesh.nodes[node], Point{0, 0, 1}));
+  };
+  UntangleProblem problem = problem_of(mesh, shape.field, h);
+  problem.target.assign(mesh.bricks.size(), {float(h), float(h), float(h)});
+  for (const auto& [outer, twin] : add_pillow(mesh, 0.3 * h))
+    problem.surface.push_back({twin, &shape.field, thickness(outer)});
+  for (std::size_t e = problem.target.size(); e < mesh.bricks.size(); ++e) {
+    double mean = 0;
+    for (int c = 4; c < 8; ++c) mean += 0.25 * thickness(mesh.bricks[e][c]);
+    problem.target.push_back({float(h), float(h), float(mean)});
+  }
+  problem.bricks = mesh.bricks;
+  fit(mesh, shape.field, problem, shape.table_volume, 150, 1.0);
+  return mesh;
 }
 
 BoneMesh loft_mesh(const BoneRecipe& recipe, BoneShape& shape, double h, Resolution resolution) {
@@ -98,7 +130,7 @@ BoneMesh loft_mesh(const BoneRecipe& recipe, BoneShape& shape, double h, Resolut
   for (const Brick& brick : mesh.bricks)
     problem.target.push_back(edge_lengths(corners_of(mesh.nodes, brick)));
   fit(mesh, shape.field, problem,
-      shape.table_volume > 0 ? shape.table_volume : shape.field.volume());
+      shape.table_volume > 0 ? shape.table_volume : shape.field.volume(), 100, 0.06 * h);
   return mesh;
 }
 
@@ -138,12 +170,15 @@ Made make(const std::string& name, Resolution resolution) {
   BoneShape shape =
       bone_shape(name, std::clamp(h / 5, 0.4, 1.2), recipe.maker == "loft" ? 4.0 : 1.3 * h + 2);
   Made made;
+  const bool solid = recipe.solid_cortex > 0 && resolution != Resolution::coarse;
   made.mesh = recipe.maker == "loft" ? loft_mesh(recipe, shape, h, resolution)
+              : solid                ? solid_cortex_mesh(recipe, shape, h, recipe.solid_cortex)
                                      : overlay_mesh(recipe, shape, h);
   made.mesh.name = name;
   made.mesh.resolution = resolution;
+  if (!solid) made.mesh.cortex = cortex_of(made.mesh, name, shape);
   made.report = measure(made.mesh);
-  made.report.maker = recipe.maker;
+  made.report.maker = solid ? "overlay with solid cortex" : recipe.maker;
   made.report.expected_euler = recipe.euler.value_or(made.report.euler);
   made.report.table_volume = shape.table_volume;
   const SurfaceError error = surface_error(made.mesh, shape.field);

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -10,6 +11,8 @@
 using namespace fabrica::body;
 
 namespace {
+
+bool near(double a, double b) { return std::abs(a - b) < 1e-12; }
 
 void check_bone(const std::string& name, Resolution resolution, double most_error) {
   CAPTURE(name);
@@ -32,6 +35,45 @@ void check_bone(const std::string& name, Resolution resolution, double most_erro
 TEST_CASE("every bone meshes at coarse within the gates of quality, topology, volume and surface") {
   CHECK(bone_names().size() == 116);
   for (const std::string& name : bone_names()) check_bone(name, Resolution::coarse, 1.5);
+}
+
+TEST_CASE("bones of each kind mesh at standard within the gates") {
+  for (const char* name :
+       {"L3", "hip_bone", "scapula", "rib5", "metacarpal2", "costal_cartilage6", "femur"})
+    check_bone(name, Resolution::standard, 0.8);
+}
+
+// Midshaft of the femur: inner / outer diameter 0.50 to 0.59 (J Exp Biol 2005;208:899) in a shaft
+// of 14 mm radius.
+TEST_CASE("the cortex of the femur is solid at standard and as thick as the table says") {
+  const BoneMesh mesh = mesh_bone({"femur", Resolution::standard});
+  CHECK(mesh.cortex.empty());
+  std::vector<double> midshaft;
+  for (std::size_t e = 0; e < mesh.bricks.size(); ++e) {
+    if (mesh.brick_layer[e] != 1) continue;
+    const Corners x = corners_of(mesh.nodes, mesh.bricks[e]);
+    const Point through = 0.25 * ((x[4] - x[0]) + (x[5] - x[1]) + (x[6] - x[2]) + (x[7] - x[3]));
+    if (x[0].z > -230 && x[0].z < -170) midshaft.push_back(norm(through));
+  }
+  REQUIRE(midshaft.size() > 20);
+  std::sort(midshaft.begin(), midshaft.end());
+  CHECK(midshaft[midshaft.size() / 2] == doctest::Approx(6.6).epsilon(0.10));
+}
+
+TEST_CASE("shells get the thickness of the table: a profile along ribs, regions on vertebrae") {
+  const BoneMesh rib = mesh_bone({"rib5", Resolution::coarse});
+  REQUIRE(rib.cortex.size() == rib.surface.size());
+  for (const double t : rib.cortex) CHECK((t >= 0.5 && t <= 0.95));
+  const BoneMesh vertebra = mesh_bone({"L3", Resolution::coarse});
+  REQUIRE(vertebra.cortex.size() == vertebra.surface.size());
+  for (std::size_t q = 0; q < vertebra.surface.size(); ++q) {
+    double x = 0;
+    for (const int n : vertebra.surface[q]) x += 0.25 * vertebra.nodes[n].x;
+    if (x > -10)
+      CHECK(
+          (near(vertebra.cortex[q], 0.45) || near(vertebra.cortex[q], 0.6)));  // body and endplates
+    if (x < -30) CHECK(vertebra.cortex[q] <= 1.1);                             // arch and processes
+  }
 }
 
 TEST_CASE("the left bone is the exact mirror image of the right one") {

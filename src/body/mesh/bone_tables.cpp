@@ -156,6 +156,8 @@ const std::vector<BoneRecipe>& bone_recipes() {
       r.edge = {table.number(row, "coarse"), table.number(row, "standard"),
                 table.number(row, "fine")};
       r.growth = table.number(row, "growth");
+      if (!table.text(row, "solid_cortex").empty())
+        r.solid_cortex = table.number(row, "solid_cortex");
       if (r.maker == "loft")
         r.core = {int(table.number(row, "core_coarse")), int(table.number(row, "core_standard")),
                   int(table.number(row, "core_fine"))};
@@ -179,17 +181,21 @@ const BoneRecipe& bone_recipe(const std::string& name) {
 
 BoneShape bone_shape(const std::string& name, double grid, double margin) {
   const IndexRow index = index_row(name);
-  const bool stacked = has_data_file(path_of(name + "_stack")) && bone_recipe(name).maker != "loft";
-  if (stacked) {
-    BoneShape shape{DistanceField::of_slices(read_slices(name), index.axes, grid, margin),
-                    std::nullopt, index.volume};
-    match_volume(shape.field, index.volume);
-    return shape;
-  }
-  Loft loft(read_stations(name), 0.8);
-  BoneShape shape{DistanceField::of_triangles(loft.surface(48, 2.0), grid, margin), loft,
-                  index.volume};
+  std::optional<Loft> loft;
+  const bool stacked = bone_recipe(name).maker != "loft" && has_data_file(path_of(name + "_stack"));
+  if (!stacked) loft.emplace(read_stations(name), 0.8);
+  if (loft && index.volume > 0) loft->match_volume(index.volume);
+  BoneShape shape{stacked ? DistanceField::of_slices(read_slices(name), index.axes, grid, margin)
+                          : DistanceField::of_triangles(loft->surface(48, 2.0), grid, margin),
+                  loft,
+                  index.volume,
+                  {},
+                  {}};
   if (index.volume > 0) match_volume(shape.field, index.volume);
+  const Box box = shape.field.box();
+  const Point a = shape.field.axes().to_bone(box.low), b = shape.field.axes().to_bone(box.high);
+  for (int d = 0; d < 3; ++d)
+    shape.low[d] = std::min(a[d], b[d]), shape.high[d] = std::max(a[d], b[d]);
   return shape;
 }
 

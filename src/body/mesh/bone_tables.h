@@ -16,8 +16,10 @@ struct BoneRecipe {
   std::string maker;             // "overlay" or "loft"
   std::array<double, 3> edge{};  // [mm] of the bricks by resolution
   double growth = 0;             // of the field before cells are chosen, in edges
-  std::array<int, 3> core{};     // bricks along the side of a loft's core, by resolution
-  std::optional<int> euler;      // of the boundary
+  double solid_cortex =
+      0;  // [mm] least thickness of the cortex as bricks, from standard on; 0: shells
+  std::array<int, 3> core{};  // bricks along the side of a loft's core, by resolution
+  std::optional<int> euler;   // of the boundary
   double spacing(Resolution r) const { return edge[std::size_t(r)]; }
 };
 
@@ -30,6 +32,7 @@ struct BoneShape {
                         // table's volume
   std::optional<Loft> loft;
   double table_volume = 0;  // [mm3]; 0: none stated
+  Point low{}, high{};      // [mm] box of the solid in the bone frame
 };
 
 // grid: spacing of the field [mm]; margin around the surface [mm]

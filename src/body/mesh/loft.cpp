@@ -99,25 +99,54 @@ LoftStation Loft::section(double s) const {
   while (i + 2 < stations_.size() && stations_[i + 1].s < s) ++i;
   const LoftStation &a = stations_[i], &b = stations_[i + 1];
   const double width = b.s - a.s, t = std::clamp((s - a.s) / width, 0.0, 1.0);
-  // cubic Hermite centre-line with slopes from the neighbours
-  const auto slope = [&](std::size_t k) {
-    const std::size_t low = k > 0 ? k - 1 : 0, high = std::min(k + 1, stations_.size() - 1);
-    return (1 / (stations_[high].s - stations_[low].s)) * (stations_[high].c - stations_[low].c);
-  };
+  // cubic Hermite interpolation with slopes from the neighbours, one-sided at the ends
+  const std::size_t before = i > 0 ? i - 1 : i, after = std::min(i + 2, stations_.size() - 1);
   const double t2 = t * t, t3 = t2 * t;
+  const auto cubic = [&](const auto& of) {
+    const auto low = (width / (b.s - stations_[before].s)) * (of(b) - of(stations_[before]));
+    const auto high = (width / (stations_[after].s - a.s)) * (of(stations_[after]) - of(a));
+    return (2 * t3 - 3 * t2 + 1) * of(a) + (t3 - 2 * t2 + t) * low + (3 * t2 - 2 * t3) * of(b) +
+           (t3 - t2) * high;
+  };
   LoftStation r;
   r.s = s;
-  r.c = (2 * t3 - 3 * t2 + 1) * a.c + ((t3 - 2 * t2 + t) * width) * slope(i) +
-        (3 * t2 - 2 * t3) * b.c + ((t3 - t2) * width) * slope(i + 1);
+  r.c = cubic([](const LoftStation& p) { return p.c; });
   r.n = unit((1 - t) * a.n + t * b.n);
   const Point e = (1 - t) * a.e1 + t * b.e1;
   r.e1 = unit(e - dot(e, r.n) * r.n);
-  r.r0 = (1 - t) * a.r0 + t * b.r0;
+  r.r0 = cubic([](const LoftStation& p) { return p.r0; });
   for (int k = 0; k < loft_harmonics; ++k) {
-    r.cosine[k] = (1 - t) * a.cosine[k] + t * b.cosine[k];
-    r.sine[k] = (1 - t) * a.sine[k] + t * b.sine[k];
+    r.cosine[k] = cubic([k](const LoftStation& p) { return p.cosine[k]; });
+    r.sine[k] = cubic([k](const LoftStation& p) { return p.sine[k]; });
   }
   return r;
+}
+
+double Loft::volume(double dome) const {
+  const TriangleSurface closed = Loft(stations_, dome).surface(32, 2.0);
+  double six_times = 0;
+  for (const auto& t : closed.triangles)
+    six_times += dot(closed.nodes[t[0]], cross(closed.nodes[t[1]], closed.nodes[t[2]]));
+  return six_times / 6;
+}
+
+void Loft::match_volume(double volume) {
+  double low = 0.3, high = 1.8;
+  for (int i = 0; i < 12; ++i) {
+    dome_ = 0.5 * (low + high);
+    (this->volume(dome_) < volume ? low : high) = dome_;
+  }
+}
+
+double Loft::nearest(const Point& p) const {
+  const int samples = std::max(20, int(length() / 2));
+  double best = 0, least = 1e18;
+  for (int i = 0; i <= samples; ++i) {
+    const double s = length() * i / samples;
+    const Point d = section(s).c - p;
+    if (dot(d, d) < least) least = dot(d, d), best = s;
+  }
+  return best;
 }
 
 TriangleSurface Loft::surface(int around, double step) const {

@@ -25,8 +25,12 @@ class Loft {
   Loft(std::vector<LoftStation> stations, double dome);
 
   double length() const { return stations_.back().s; }
-  // section at s [mm] in [0, length]: cubic centre-line, harmonics linear
+  // chooses the height of the domes, 0.3 to 1.8 mean radii, that brings the volume [mm3] nearest
+  void match_volume(double volume);
+  // section at s [mm] in [0, length]: cubic between the stations
   LoftStation section(double s) const;
+  // s of the point of the centre-line nearest to p
+  double nearest(const Point& p) const;
   // closed surface with `around` points a section, sections `step` mm apart
   TriangleSurface surface(int around, double step) const;
 
@@ -34,6 +38,8 @@ class Loft {
   BoneMesh bricks(int core, double h) const;
 
  private:
+  double volume(double dome) const;
+
   std::vector<LoftStation> stations_;
   double dome_;
 };
