@@ -10,109 +10,26 @@
 
 #include "body/mesh/bone_tables.h"
 #include "body/mesh/cortex.h"
-#include "body/mesh/overlay.h"
-#include "body/mesh/polish.h"
-#include "body/mesh/quality.h"
-#include "body/mesh/untangle.h"
+#include "body/mesh/mesher.h"
 
 namespace fabrica::body {
 namespace {
 
-// mean length of a brick's edges along each of its directions
-std::array<float, 3> edge_lengths(const Corners& x) {
-  const int low[3][4] = {{0, 3, 4, 7}, {0, 1, 4, 5}, {0, 1, 2, 3}},
-            high[3][4] = {{1, 2, 5, 6}, {3, 2, 7, 6}, {4, 5, 6, 7}};
-  std::array<float, 3> lengths{};
-  for (int d = 0; d < 3; ++d)
-    for (int e = 0; e < 4; ++e) lengths[d] += float(0.25 * norm(x[high[d][e]] - x[low[d][e]]));
-  return lengths;
-}
-
-double solid_volume(const BoneMesh& mesh) {
-  double volume = 0;
-  for (const Brick& brick : mesh.bricks) volume += volume_of(corners_of(mesh.nodes, brick));
-  return volume;
-}
-
-double area_of(const BoneMesh& mesh) {
-  double area = 0;
-  for (const Quad& q : mesh.surface)
-    area +=
-        0.5 * norm(cross(mesh.nodes[q[2]] - mesh.nodes[q[0]], mesh.nodes[q[3]] - mesh.nodes[q[1]]));
-  return area;
-}
-
-UntangleProblem problem_of(const BoneMesh& mesh, const DistanceField& field, double h) {
-  UntangleProblem problem;
-  problem.bricks = mesh.bricks;
-  problem.spacing = h;
-  std::vector<bool> on_surface(mesh.nodes.size(), false);
-  for (const Quad& quad : mesh.surface)
-    for (const int n : quad) on_surface[n] = true;
-  for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
-    if (on_surface[n]) problem.surface.push_back({int(n), &field, 0});
-  return problem;
-}
-
-// brings the boundary onto the field; chords cut convex corners, so the surface moves out until the
-// bricks hold the volume
-void fit(BoneMesh& mesh, DistanceField& field, const UntangleProblem& problem, double volume,
-         double end_weight, double least_size) {
-  for (const double weight : {0.3, 2.0, 10.0, 40.0}) untangle(problem, mesh.nodes, weight, 40);
-  const double table_offset = field.offset;
-  for (int pass = 0; pass < 3; ++pass) {
-    const double missing = volume - solid_volume(mesh);
-    field.offset += std::clamp(missing / area_of(mesh), -0.5, 0.5);
-    untangle(problem, mesh.nodes, end_weight, 40);
-  }
-  const MeshReport now = measure(mesh);
-  if (now.min_scaled_jacobian < 0.45 || now.min_size < least_size) {
-    PolishOptions options;
-    options.size = least_size;
-    options.weight = 0.5 * end_weight;
-    polish(problem, mesh.nodes, options);
-  }
-  field.offset = table_offset;
-}
-
-// The cells of a bone: the first grid placement and growth that give the boundary the bone's Euler
-// number.
-BoneMesh cells_of(const BoneRecipe& recipe, const BoneShape& shape, double h) {
-  const Point shifts[] = {
-      {0, 0, 0}, {0.25, 0.25, 0.25}, {0.5, 0, 0.25}, {0, 0.5, 0.5}, {0.5, 0.5, 0}};
-  std::string found;
-  for (const double more : {0.0, 0.1, -0.1, 0.2, 0.3})
-    for (const Point& shift : shifts) {
-      CellGrid grid = rasterise(shape.field, h, std::max(0.0, recipe.growth + more) * h, shift);
-      if (!repair(grid)) continue;
-      BoneMesh mesh = bricks_of(grid);
-      const int euler = euler_number(mesh.surface);
-      if (!mesh.bricks.empty() && euler == recipe.euler.value_or(euler)) return mesh;
-      found += fmt::format(" {}", euler);
-    }
-  throw BodyError(
-      fmt::format("{}: the boundary should have the Euler number {}; grids of {} mm gave{}",
-                  recipe.name, recipe.euler.value_or(0), h, found));
-}
-
-BoneMesh overlay_mesh(const BoneRecipe& recipe, BoneShape& shape, double h) {
-  BoneMesh mesh = cells_of(recipe, shape, h);
-  UntangleProblem problem = problem_of(mesh, shape.field, h);
-  problem.target.assign(mesh.bricks.size(), {float(h), float(h), float(h)});
-  fit(mesh, shape.field, problem, shape.table_volume, 100, 0.3 * h);
-  return mesh;
+CellOptions cell_options(const BoneRecipe& recipe, double h) {
+  return {recipe.name, h, recipe.growth, recipe.euler};
 }
 
 // The cortex as a layer of bricks of the thickness that the table gives, at least `least` mm.
 BoneMesh solid_cortex_mesh(const BoneRecipe& recipe, BoneShape& shape, double h, double least) {
-  BoneMesh mesh = cells_of(recipe, shape, h);
+  BoneMesh mesh = cells_of(shape.field, cell_options(recipe, h));
   const CortexTable table(recipe.name, shape);
   const auto thickness = [&](int node) {
     return std::max(least, table.at(mesh.nodes[node], Point{0, 0, 1}));
   };
   UntangleProblem problem = problem_of(mesh, shape.field, h);
   problem.target.assign(mesh.bricks.size(), {float(h), float(h), float(h)});
-  for (const auto& [outer, twin] : add_pillow(mesh, 0.3 * h))
+  for (const auto& [outer, twin] :
+       add_pillow(mesh, std::vector<char>(mesh.bricks.size(), 1), 0.3 * h))
     problem.surface.push_back({twin, &shape.field, thickness(outer)});
   for (std::size_t e = problem.target.size(); e < mesh.bricks.size(); ++e) {
     double mean = 0;
@@ -120,7 +37,7 @@ BoneMesh solid_cortex_mesh(const BoneRecipe& recipe, BoneShape& shape, double h,
     problem.target.push_back({float(h), float(h), float(mean)});
   }
   problem.bricks = mesh.bricks;
-  fit(mesh, shape.field, problem, shape.table_volume, 150, 1.0);
+  fit(mesh, shape.field, problem, {shape.table_volume, 150, 1.0});
   return mesh;
 }
 
@@ -129,8 +46,7 @@ BoneMesh loft_mesh(const BoneRecipe& recipe, BoneShape& shape, double h, Resolut
   UntangleProblem problem = problem_of(mesh, shape.field, 0.5 * h);
   for (const Brick& brick : mesh.bricks)
     problem.target.push_back(edge_lengths(corners_of(mesh.nodes, brick)));
-  fit(mesh, shape.field, problem,
-      shape.table_volume > 0 ? shape.table_volume : shape.field.volume(), 100, 0.06 * h);
+  fit(mesh, shape.field, problem, {shape.table_volume, 100, 0.06 * h});
   return mesh;
 }
 
@@ -173,7 +89,7 @@ Made make(const std::string& name, Resolution resolution) {
   const bool solid = recipe.solid_cortex > 0 && resolution != Resolution::coarse;
   made.mesh = recipe.maker == "loft" ? loft_mesh(recipe, shape, h, resolution)
               : solid                ? solid_cortex_mesh(recipe, shape, h, recipe.solid_cortex)
-                                     : overlay_mesh(recipe, shape, h);
+                      : mesh_solid(shape.field, cell_options(recipe, h), shape.table_volume);
   made.mesh.name = name;
   made.mesh.resolution = resolution;
   if (!solid) made.mesh.cortex = cortex_of(made.mesh, name, shape);

@@ -191,7 +191,10 @@ BoneShape bone_shape(const std::string& name, double grid, double margin) {
                   index.volume,
                   {},
                   {}};
-  if (index.volume > 0) match_volume(shape.field, index.volume);
+  if (index.volume > 0)
+    match_volume(shape.field, index.volume);
+  else
+    shape.table_volume = shape.field.volume();
   const Box box = shape.field.box();
   const Point a = shape.field.axes().to_bone(box.low), b = shape.field.axes().to_bone(box.high);
   for (int d = 0; d < 3; ++d)

@@ -31,7 +31,7 @@ struct BoneShape {
   DistanceField field;  // zero level: the surface of the table, moved outward so that it holds the
                         // table's volume
   std::optional<Loft> loft;
-  double table_volume = 0;  // [mm3]; 0: none stated
+  double table_volume = 0;  // [mm3] that the table states, or of the surface where it states none
   Point low{}, high{};      // [mm] box of the solid in the bone frame
 };
 

@@ -218,33 +218,37 @@ BoneMesh bricks_of(const CellGrid& grid) {
   return mesh;
 }
 
-std::vector<std::array<int, 2>> add_pillow(BoneMesh& mesh, double depth) {
-  // towards the centres of the bricks that use the node
-  std::vector<Point> inward(mesh.nodes.size(), Point{0, 0, 0});
+std::vector<Twins> add_pillow(BoneMesh& mesh, const std::vector<char>& region, double depth) {
+  std::vector<Brick> members;
+  for (std::size_t e = 0; e < mesh.bricks.size(); ++e)
+    if (region[e]) members.push_back(mesh.bricks[e]);
+  const std::vector<Quad> boundary = boundary_quads(members);
+  std::vector<Point> inward(
+      mesh.nodes.size(),
+      Point{0, 0, 0});  // sum of the centres of the region's bricks around a node
   std::vector<int> uses(mesh.nodes.size(), 0);
-  for (const Brick& brick : mesh.bricks) {
+  for (const Brick& brick : members) {
     Point centre{0, 0, 0};
     for (const int n : brick) centre += 0.125 * mesh.nodes[n];
     for (const int n : brick) inward[n] += centre, ++uses[n];
   }
   std::vector<int> twin(mesh.nodes.size(), -1);
-  std::vector<std::array<int, 2>> pairs;
-  for (const Quad& quad : mesh.surface)
+  std::vector<Twins> pairs;
+  for (const Quad& quad : boundary)
     for (const int n : quad) {
       if (twin[n] >= 0) continue;
       twin[n] = int(mesh.nodes.size());
       const Point to = (1.0 / uses[n]) * inward[n] - mesh.nodes[n];
-      const double length = std::max(norm(to), 1e-9);
-      mesh.nodes.push_back(mesh.nodes[n] + (depth / length) * to);
+      mesh.nodes.push_back(mesh.nodes[n] + (depth / std::max(norm(to), 1e-9)) * to);
       pairs.push_back({n, twin[n]});
     }
-  for (Brick& brick : mesh.bricks)
-    for (int& n : brick)
-      if (twin[n] >= 0) n = twin[n];
+  for (std::size_t e = 0; e < region.size(); ++e)
+    if (region[e])
+      for (int& n : mesh.bricks[e])
+        if (twin[n] >= 0) n = twin[n];
   // a face seen from outside runs counter-clockwise: twins below, surface above
-  for (const Quad& quad : mesh.surface) {
-    mesh.bricks.push_back({twin[quad[0]], twin[quad[1]], twin[quad[2]], twin[quad[3]], quad[0],
-                           quad[1], quad[2], quad[3]});
+  for (const Quad& q : boundary) {
+    mesh.bricks.push_back({twin[q[0]], twin[q[1]], twin[q[2]], twin[q[3]], q[0], q[1], q[2], q[3]});
     mesh.brick_layer.push_back(1);
   }
   return pairs;

@@ -12,7 +12,7 @@ namespace fabrica::body {
 
 struct CellGrid {
   Axes axes;
-  Point origin;  // of cell (0, 0, 0), in grid axes
+  Point origin{0, 0, 0};  // of cell (0, 0, 0), in grid axes
   double spacing = 1;
   std::array<int, 3> count{};
   std::vector<unsigned char> inside;
@@ -32,9 +32,14 @@ bool repair(CellGrid& grid);
 // nodes and bricks of the cells inside
 BoneMesh bricks_of(const CellGrid& grid);
 
-// A layer of bricks behind the whole boundary: each boundary node gets a twin inside, at `depth` of
-// the way of one spacing along the mean direction of its bricks' centres. New bricks are of layer
-// 1; returns (surface node, twin) pairs.
-std::vector<std::array<int, 2>> add_pillow(BoneMesh& mesh, double depth);
+// A layer of bricks behind the whole boundary of a region of bricks (region[brick] = 1): each node
+// of the boundary gets a twin inside, `depth` mm towards the centres of the region's bricks around
+// it; the region's bricks take the twins, and each face of the boundary becomes a brick from its
+// twins (corners 0 to 3) to itself (4 to 7). The boundary's own nodes stay shared with the bricks
+// outside the region. New bricks follow the old ones; their layer is 1.
+struct Twins {
+  int node, twin;
+};
+std::vector<Twins> add_pillow(BoneMesh& mesh, const std::vector<char>& region, double depth);
 
 }  // namespace fabrica::body

@@ -13,6 +13,15 @@ Corners corners_of(const std::vector<Point>& nodes, const Brick& brick) {
   return corners;
 }
 
+std::array<float, 3> edge_lengths(const Corners& x) {
+  const int low[3][4] = {{0, 3, 4, 7}, {0, 1, 4, 5}, {0, 1, 2, 3}},
+            high[3][4] = {{1, 2, 5, 6}, {3, 2, 7, 6}, {4, 5, 6, 7}};
+  std::array<float, 3> lengths{};
+  for (int d = 0; d < 3; ++d)
+    for (int e = 0; e < 4; ++e) lengths[d] += float(0.25 * norm(x[high[d][e]] - x[low[d][e]]));
+  return lengths;
+}
+
 double scaled_jacobian(const Corners& corners) {
   double least = 1;
   for (int c = 0; c < 8; ++c) {

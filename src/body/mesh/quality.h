@@ -30,6 +30,9 @@ double volume_of(const Corners& corners);
 // [mm] volume / largest face: what a wave must cross
 double size_of(const Corners& corners);
 
+// [mm] mean length of a brick's edges along each of its three directions
+std::array<float, 3> edge_lengths(const Corners& corners);
+
 // outward quads that belong to one brick only, in the order of the bricks
 std::vector<Quad> boundary_quads(const std::vector<Brick>& bricks);
 // V - E + F of a surface
