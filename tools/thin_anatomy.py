@@ -13,6 +13,9 @@ import sys
 
 HARMONICS = 6
 SPACING = 1.6
+VAULT_DEGREE = 10  # a smooth fit; a lower degree leaves waves of 1.5 mm on the crown
+# the slices of the skull are 4.9 mm apart: its table is already coarser (0.7 mm) than the thinned form of the others
+WHOLE = {"skull"}
 NOTICE = ("# Dimensions measured from BodyParts3D, (c) The Database Center for Life Science, CC BY-SA 4.0; changes: scaled"
           " per region, reduced to cross-section fits, thinned. See LICENSE in data/anatomy.\n")
 # bones meshed from their lofts (no stack, or a shape that sections describe better)
@@ -51,7 +54,8 @@ def vector(text, name):
 def thin_stack(source, target):
     comments, rows = read(source)
     heights = sorted({float(row["s_mm"]) for row in rows})
-    keep = {heights[i] for i in kept(len(heights))}
+    whole = source.name.removesuffix("_stack.csv") in WHOLE
+    keep = set(heights) if whole else {heights[i] for i in kept(len(heights))}
     orders = range(-HARMONICS, HARMONICS + 1)
     columns = ["height", "sign"] + [f"{part}{k}" for k in orders for part in ("re", "im")]
     out = [[number(row["s_mm"]), int(row["sign"])] + [number(row[f"{part}{k}"]) for k in orders for part in ("re", "im")]
@@ -118,7 +122,7 @@ def constructed_cartilages(source, target):
 def vault(source, target):
     _, rows = read(source)
     out = [[row["l"], row["m"]] + [f"{float(row[c]):.3f}" for c in ("outer_mm", "inner_am50_mm")] for row in rows
-           if int(row["l"]) <= 8]
+           if int(row["l"]) <= VAULT_DEGREE]
     write(target, "# real orthonormal spherical harmonics of the vault's radius about (8.20, 0, 84.67) in frame head [mm];\n"
           "# theta from +z, phi from +x to +y, no Condon-Shortley phase, m < 0 sine, m > 0 cosine; outer: external table,\n"
           "# inner: endocranial surface for literature thickness\n", ["l", "m", "outer", "inner"], out)

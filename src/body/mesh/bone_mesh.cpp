@@ -7,10 +7,12 @@
 #include <cmath>
 #include <map>
 #include <mutex>
+#include <set>
 
 #include "body/mesh/bone_tables.h"
 #include "body/mesh/cortex.h"
 #include "body/mesh/mesher.h"
+#include "body/mesh/skull.h"
 
 namespace fabrica::body {
 namespace {
@@ -50,6 +52,22 @@ BoneMesh loft_mesh(const BoneRecipe& recipe, BoneShape& shape, double h, Resolut
   return mesh;
 }
 
+// no shell where the brick behind a quad is a table of the vault
+void clear_where_solid(BoneMesh& mesh) {
+  std::set<Quad> solid;
+  for (std::size_t e = 0; e < mesh.bricks.size(); ++e) {
+    if (mesh.brick_layer[e] != 1 && mesh.brick_layer[e] != 3) continue;
+    Quad face{mesh.bricks[e][4], mesh.bricks[e][5], mesh.bricks[e][6], mesh.bricks[e][7]};
+    std::sort(face.begin(), face.end());
+    solid.insert(face);
+  }
+  for (std::size_t q = 0; q < mesh.surface.size(); ++q) {
+    Quad face = mesh.surface[q];
+    std::sort(face.begin(), face.end());
+    if (solid.count(face)) mesh.cortex[q] = 0;
+  }
+}
+
 // what every mesh must reach; throws BodyError with the first figure that fails
 void check_gates(const MeshReport& r, Resolution resolution) {
   constexpr double least_jacobian = 0.30, least_p1 = 0.42, volume_tolerance = 0.10;
@@ -87,12 +105,14 @@ Made make(const std::string& name, Resolution resolution) {
       bone_shape(name, std::clamp(h / 5, 0.4, 1.2), recipe.maker == "loft" ? 4.0 : 1.3 * h + 2);
   Made made;
   const bool solid = recipe.solid_cortex > 0 && resolution != Resolution::coarse;
-  made.mesh = recipe.maker == "loft" ? loft_mesh(recipe, shape, h, resolution)
-              : solid                ? solid_cortex_mesh(recipe, shape, h, recipe.solid_cortex)
+  made.mesh = recipe.maker == "loft"    ? loft_mesh(recipe, shape, h, resolution)
+              : recipe.maker == "skull" ? skull_mesh(shape, cell_options(recipe, h), resolution)
+              : solid                   ? solid_cortex_mesh(recipe, shape, h, recipe.solid_cortex)
                       : mesh_solid(shape.field, cell_options(recipe, h), shape.table_volume);
   made.mesh.name = name;
   made.mesh.resolution = resolution;
   if (!solid) made.mesh.cortex = cortex_of(made.mesh, name, shape);
+  if (recipe.maker == "skull") clear_where_solid(made.mesh);
   made.report = measure(made.mesh);
   made.report.maker = solid ? "overlay with solid cortex" : recipe.maker;
   made.report.expected_euler = recipe.euler.value_or(made.report.euler);

@@ -16,8 +16,7 @@ enum class Resolution { coarse, standard, fine };
 using Point = Vec3d;
 
 struct BoneMesh {
-  std::string
-      name;  // "femur", "L3", "rib5", "costal_cartilage3", "hip_bone", "skull", "metacarpal2", ...
+  std::string name;  // "femur", "L3", "rib5", "costal_cartilage3", "hip_bone", "metacarpal2", ...
   Resolution resolution = Resolution::coarse;
   Point scale{1, 1, 1};                    // applied to the table's shape, about the frame's origin
   std::vector<Point> nodes;                // [mm], bone frame
@@ -25,8 +24,9 @@ struct BoneMesh {
   std::vector<int> brick_layer;  // 0 trabecular (or the only tissue), 1 solid cortex; the skull's
                                  // vault: 0 other bone, 1 outer table, 2 diploe, 3 inner table
   std::vector<std::array<int, 4>> surface;  // boundary quads of the solid, outward normal
-  std::vector<double>
-      cortex;  // [mm] shell thickness of each boundary quad; empty where the cortex is solid
+  // [mm] shell thickness of each boundary quad, 0 where the cortex behind it is solid; empty where
+  // it is solid all over
+  std::vector<double> cortex;
 };
 
 struct BoneRequest {
@@ -39,7 +39,7 @@ struct BoneRequest {
 // volume / largest face.
 struct MeshReport {
   std::string name;
-  std::string maker;  // "overlay", "overlay with solid cortex", "loft", "ellipsoid"
+  std::string maker;                     // "overlay", "overlay with solid cortex", "loft", "skull"
   int nodes = 0, bricks = 0, euler = 0;  // euler: of the boundary surface, V - E + F
   int expected_euler = 2;          // as anatomy has it: 2, or 0 for a bone with one hole through it
   double min_scaled_jacobian = 0;  // [-]

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/lane_math.h"
+#include "body/mesh/skull.h"
 #include "body/tables.h"
 
 namespace fabrica::body {
@@ -181,6 +182,9 @@ const BoneRecipe& bone_recipe(const std::string& name) {
 
 BoneShape bone_shape(const std::string& name, double grid, double margin) {
   const IndexRow index = index_row(name);
+  if (name == "skull")
+    return skull_shape(DistanceField::of_slices(read_slices(name), index.axes, grid, margin), grid,
+                       margin);
   std::optional<Loft> loft;
   const bool stacked = bone_recipe(name).maker != "loft" && has_data_file(path_of(name + "_stack"));
   if (!stacked) loft.emplace(read_stations(name), 0.8);

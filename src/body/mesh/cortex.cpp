@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "body/mesh/skull_vault.h"
 #include "body/tables.h"
 
 namespace fabrica::body {
 namespace {
 
-constexpr double limit = 1e6;                   // [mm] of a box without one
-constexpr Point vault_centre{8.2, 0.0, 84.67};  // [mm] frame head
+constexpr double limit = 1e6;  // [mm] of a box without one
 constexpr double most_of_thickness = 0.45;
 
 double number_or(const Table& table, int row, const char* column, double otherwise) {
@@ -23,14 +23,6 @@ std::string profile_name(const std::string& bone) {
   for (const char* group : {"rib", "metacarpal", "hand_phalanx", "metatarsal", "foot_phalanx"})
     if (bone.rfind(group, 0) == 0) return group;
   return bone;
-}
-
-// thickness of a region: `total` rows are shared by both faces
-double region_thickness(const Table& table, const std::string& region) {
-  for (int row = 0; row < table.rows(); ++row)
-    if (table.text(row, "region") == region)
-      return table.number(row, "thickness") * (table.text(row, "where") == "total" ? 0.5 : 1.0);
-  throw BodyError(fmt::format("cortical_thickness.csv has no row for the region '{}'", region));
 }
 
 // [mm] of bone along the inward normal from a point near the surface, counted up to `enough`
@@ -49,6 +41,14 @@ double thickness_behind(const DistanceField& field, const Point& place, const Po
 
 }  // namespace
 
+double table_thickness(const std::string& region) {
+  const Table table("anatomy/bones/cortical_thickness.csv");
+  for (int row = 0; row < table.rows(); ++row)
+    if (table.text(row, "region") == region)
+      return table.number(row, "thickness") * (table.text(row, "where") == "total" ? 0.5 : 1.0);
+  throw BodyError(fmt::format("cortical_thickness.csv has no row for the region '{}'", region));
+}
+
 CortexTable::CortexTable(const std::string& bone, const BoneShape& shape)
     : bone_(bone), shape_(shape) {
   const Table thickness("anatomy/bones/cortical_thickness.csv"),
@@ -61,7 +61,7 @@ CortexTable::CortexTable(const std::string& bone, const BoneShape& shape)
     r.high = {number_or(regions, row, "xmax", limit), number_or(regions, row, "ymax", limit),
               number_or(regions, row, "zmax", limit)};
     r.facing = regions.text(row, "facing");
-    r.thickness = region_thickness(thickness, regions.text(row, "region"));
+    r.thickness = table_thickness(regions.text(row, "region"));
     regions_.push_back(r);
   }
   const std::string profile = profile_name(bone);

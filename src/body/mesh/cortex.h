@@ -9,6 +9,10 @@
 
 namespace fabrica::body {
 
+// [mm] of a region in cortical_thickness.csv; half of it where the row gives the total of both
+// faces
+double table_thickness(const std::string& region);
+
 class CortexTable {
  public:
   // shape: of the bone of this name; both must outlive the table

@@ -49,6 +49,10 @@ class DistanceField {
     return field;
   }
 
+  // Divides each value by the norm of its gradient (at least 0.6): near the surface it then is a
+  // distance.
+  void divide_by_gradient();
+
   // signed distance less the outward offset, at a point of the bone frame
   double value(const Point& p) const;
   double value(const Point& p, Point& gradient) const;
@@ -73,7 +77,6 @@ class DistanceField {
   float at(int i, int j, int k) const {
     return phi_[std::size_t(k * count_[1] + j) * count_[0] + i];
   }
-  void divide_by_gradient();
 
   Axes axes_;
   Point origin_{};  // of the grid, in grid axes
