@@ -44,7 +44,9 @@ struct MeshReport {
   int expected_euler = 2;          // as anatomy has it: 2, or 0 for a bone with one hole through it
   double min_scaled_jacobian = 0;  // [-]
   double p1_scaled_jacobian = 0;   // [-] 99 % of the bricks are above
-  double min_size = 0;             // [mm]
+  double min_size = 0;             // [mm] volume / largest face of a brick
+  double min_cortex_size =
+      0;  // [mm] the same of bricks of solid cortex and, area / longest side, of shells
   double volume = 0,
          table_volume = 0;  // [mm3] of the bricks; of the scaled table (0: the table states none)
   double error_mean = 0, error_p95 = 0;  // [mm] distance of the mesh's surface to the table's

@@ -160,8 +160,14 @@ const std::vector<BoneRecipe>& bone_recipes() {
       if (!table.text(row, "solid_cortex").empty())
         r.solid_cortex = table.number(row, "solid_cortex");
       if (r.maker == "loft")
-        r.core = {int(table.number(row, "core_coarse")), int(table.number(row, "core_standard")),
-                  int(table.number(row, "core_fine"))};
+        for (int level = 0; level < 3; ++level) {
+          const char* columns[] = {"core_coarse", "core_standard", "core_fine"};
+          const std::string& core = table.text(row, columns[level]);  // "2" or, with a ring, "2+"
+          r.ring[level] = core.ends_with('+');
+          r.core[level] = core.front() - '0';
+          if (r.core[level] < 1 || r.core[level] > 9)
+            table.fail(row, fmt::format("the core '{}' should be like 2 or 2+", core));
+        }
       if (!table.text(row, "euler").empty()) r.euler = int(table.number(row, "euler"));
       list.push_back(r);
     }

@@ -18,8 +18,9 @@ struct BoneRecipe {
   double growth = 0;             // of the field before cells are chosen, in edges
   double solid_cortex =
       0;  // [mm] least thickness of the cortex as bricks, from standard on; 0: shells
-  std::array<int, 3> core{};  // bricks along the side of a loft's core, by resolution
-  std::optional<int> euler;   // of the boundary
+  std::array<int, 3> core{};   // bricks along the side of a loft's core, by resolution
+  std::array<bool, 3> ring{};  // is there a ring around the core?
+  std::optional<int> euler;    // of the boundary
   double spacing(Resolution r) const { return edge[std::size_t(r)]; }
 };
 

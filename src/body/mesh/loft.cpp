@@ -51,21 +51,27 @@ struct Disc {
   std::vector<Quad> quads;
 };
 
-Disc o_grid(int core) {
+// core x core squares; with a ring around them, or without: then the outer points are the grid's
+// own rim
+Disc o_grid(int core, bool ring) {
   Disc disc;
   const int row = core + 1;
   for (int j = 0; j < row; ++j)
     for (int i = 0; i < row; ++i) {
       const double x = 2.0 * i / core - 1, y = 2.0 * j / core - 1;
-      // between a square and a disc, so that the corners of the core keep obtuse angles small
       const double most = std::max(std::abs(x), std::abs(y)), length = std::sqrt(x * x + y * y);
-      const double rho = length > 0 ? core_size * most * (0.45 + 0.55 * length / most) : 0;
+      // inside a ring the core is between a square and a disc, so that its corners keep obtuse
+      // angles small
+      const double rho = length == 0 ? 0
+                         : ring      ? core_size * most * (0.45 + 0.55 * length / most)
+                                     : most;
       disc.points.push_back({std::atan2(y, x), rho});
     }
   for (int j = 0; j < core; ++j)
     for (int i = 0; i < core; ++i)
       disc.quads.push_back(
           {j * row + i, j * row + i + 1, (j + 1) * row + i + 1, (j + 1) * row + i});
+  if (!ring) return disc;
   std::vector<int> rim;  // counter-clockwise from the first corner
   for (int i = 0; i < core; ++i) rim.push_back(i);
   for (int j = 0; j < core; ++j) rim.push_back(j * row + core);
@@ -183,8 +189,8 @@ TriangleSurface Loft::surface(int around, double step) const {
   return result;
 }
 
-BoneMesh Loft::bricks(int core, double h) const {
-  const Disc disc = o_grid(core);
+BoneMesh Loft::bricks(int core, bool ring, double h) const {
+  const Disc disc = o_grid(core, ring);
   BoneMesh mesh;
   double angle = 0;
   {  // start from the most flattened section, so that the core follows the flat faces

@@ -34,8 +34,9 @@ class Loft {
   // closed surface with `around` points a section, sections `step` mm apart
   TriangleSurface surface(int around, double step) const;
 
-  // O-grid bricks: a core of core x core squares inside one ring, sections h apart, closed domes.
-  BoneMesh bricks(int core, double h) const;
+  // O-grid bricks: core x core squares, inside a ring or without one, sections h apart, closed
+  // domes
+  BoneMesh bricks(int core, bool ring, double h) const;
 
  private:
   double volume(double dome) const;

@@ -48,6 +48,7 @@ BoneMesh cells_of(const DistanceField& field, const CellOptions& options) {
 UntangleProblem problem_of(const BoneMesh& mesh, const DistanceField& field, double spacing) {
   UntangleProblem problem;
   problem.bricks = mesh.bricks;
+  problem.shells = mesh.surface;
   problem.spacing = spacing;
   std::vector<bool> on_surface(mesh.nodes.size(), false);
   for (const Quad& quad : mesh.surface)
@@ -69,24 +70,23 @@ void fit(BoneMesh& mesh, DistanceField& field, const UntangleProblem& problem,
     field.offset += std::clamp(missing, -most_offset, most_offset);
     untangle(problem, mesh.nodes, options.end_weight, iterations);
   }
-  const MeshReport now = measure(mesh);
-  constexpr double jacobian_wish = 0.45;
-  if (now.min_scaled_jacobian < jacobian_wish || now.min_size < options.least_size) {
-    PolishOptions local;
-    local.jacobian = jacobian_wish;
-    local.size = options.least_size;
-    local.weight = 0.5 * options.end_weight;
-    polish(problem, mesh.nodes, local);
-  }
+  PolishOptions local;
+  local.size = options.least_size;
+  // a round bar of radius r has V / A = r / 2 and, with eight shells around it, shells of 0.75 r:
+  // slender bones have no room for larger ones
+  local.shell_size =
+      std::min(options.least_shell, options.shell_room * options.volume / surface_area(mesh));
+  local.weight = options.local_weight;
+  polish(problem, mesh.nodes, local);
   field.offset = table_offset;
 }
 
-BoneMesh mesh_solid(DistanceField& field, const CellOptions& options, double volume) {
+BoneMesh mesh_solid(DistanceField& field, const CellOptions& options, const FitOptions& fitting) {
   BoneMesh mesh = cells_of(field, options);
   UntangleProblem problem = problem_of(mesh, field, options.spacing);
   const float h = float(options.spacing);
   problem.target.assign(mesh.bricks.size(), {h, h, h});
-  fit(mesh, field, problem, {volume, 100, 0.3 * options.spacing});
+  fit(mesh, field, problem, fitting);
   return mesh;
 }
 

@@ -27,14 +27,17 @@ UntangleProblem problem_of(const BoneMesh& mesh, const DistanceField& field, dou
 struct FitOptions {
   double volume = 0;  // [mm3] that the bricks shall hold: chords cut convex corners, so the surface
                       // moves out for it
-  double end_weight = 100;  // w of the last minimisation
-  double least_size = 1;    // [mm] wish of the local stage
+  double end_weight = 100;   // w of the last minimisation
+  double least_size = 1;     // [mm] wish of the local stage for bricks
+  double least_shell = 0;    // [mm] wish for the shells on the boundary; 0: none are there
+  double shell_room = 1.2;   // shells are asked to be no larger than this many V / A
+  double local_weight = 50;  // w of the local stage
 };
 
 void fit(BoneMesh& mesh, DistanceField& field, const UntangleProblem& problem,
          const FitOptions& options);
 
 // all of it: bricks of one solid, without layers
-BoneMesh mesh_solid(DistanceField& field, const CellOptions& options, double volume);
+BoneMesh mesh_solid(DistanceField& field, const CellOptions& options, const FitOptions& fitting);
 
 }  // namespace fabrica::body

@@ -65,7 +65,8 @@ TEST_CASE("solids of known shape get their volume, topology and surface in well-
     CAPTURE(solid.name);
     DistanceField field = DistanceField::of_function(solid.box, 0.8, 8, solid.phi);
     CHECK(field.volume() == doctest::Approx(solid.volume).epsilon(0.01));
-    BoneMesh mesh = mesh_solid(field, {solid.name, edge, 0, solid.euler}, solid.volume);
+    BoneMesh mesh =
+        mesh_solid(field, {solid.name, edge, 0, solid.euler}, {solid.volume, 100, 1.2, 1.2});
     const MeshReport figures = measure(mesh);
     CHECK(figures.volume == doctest::Approx(solid.volume).epsilon(0.01));
     CHECK(figures.euler == solid.euler);
@@ -83,8 +84,8 @@ TEST_CASE("a solid whose Euler number no grid gives is refused with the numbers 
 
 TEST_CASE("the same field gives the same mesh, bit for bit") {
   DistanceField field = DistanceField::of_function({{-33, -33, -9}, {33, 33, 9}}, 0.8, 8, torus);
-  const BoneMesh a = mesh_solid(field, {"ring", 5, 0, 0}, 30000),
-                 b = mesh_solid(field, {"ring", 5, 0, 0}, 30000);
+  const BoneMesh a = mesh_solid(field, {"ring", 5, 0, 0}, {30000, 100, 1, 1}),
+                 b = mesh_solid(field, {"ring", 5, 0, 0}, {30000, 100, 1, 1});
   REQUIRE(a.nodes.size() == b.nodes.size());
   for (std::size_t n = 0; n < a.nodes.size(); ++n)
     CHECK((a.nodes[n].x == b.nodes[n].x && a.nodes[n].y == b.nodes[n].y &&
@@ -150,7 +151,7 @@ TEST_CASE("a round loft has the volume of a cylinder with domes, and its bricks 
   CHECK(field.value({0, 0, 30}) < -3.9);
   CHECK(field.value({7.5, 0, 30}) == doctest::Approx(0.5).epsilon(0.1));
   CHECK(field.value({0, 0, 67}) == doctest::Approx(0).epsilon(1).scale(0.2));
-  BoneMesh mesh = loft.bricks(2, 6);
+  BoneMesh mesh = loft.bricks(2, true, 6);
   UntangleProblem problem = problem_of(mesh, field, 3);
   for (const Brick& brick : mesh.bricks)
     problem.target.push_back(edge_lengths(corners_of(mesh.nodes, brick)));

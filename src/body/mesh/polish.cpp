@@ -23,9 +23,16 @@ struct Random {  // splitmix64
 class Neighbourhood {
  public:
   Neighbourhood(const UntangleProblem& problem, const PolishOptions& options, std::size_t nodes)
-      : problem_(problem), options_(options), bricks_of_node_(nodes), surfaces_of_node_(nodes) {
+      : problem_(problem),
+        options_(options),
+        bricks_of_node_(nodes),
+        shells_of_node_(nodes),
+        surfaces_of_node_(nodes) {
     for (std::size_t e = 0; e < problem.bricks.size(); ++e)
       for (const int n : problem.bricks[e]) bricks_of_node_[n].push_back(int(e));
+    if (options.shell_size > 0)
+      for (std::size_t q = 0; q < problem.shells.size(); ++q)
+        for (const int n : problem.shells[q]) shells_of_node_[n].push_back(int(q));
     for (const SurfaceNode& s : problem.surface) surfaces_of_node_[s.node].push_back(s);
   }
   double cost(const std::vector<Point>& nodes, int node) const {
@@ -35,6 +42,8 @@ class Neighbourhood {
       sum += exp(-14 * (scaled_jacobian(corners) - options_.jacobian));
       sum += exp(-14 * (size_of(corners) / options_.size - 1));
     }
+    for (const int q : shells_of_node_[node])
+      sum += exp(-14 * (shell_size(nodes, problem_.shells[q]) / options_.shell_size - 1));
     for (const SurfaceNode& s : surfaces_of_node_[node]) {
       const double phi = (s.field->value(nodes[node]) + s.depth) / problem_.spacing;
       sum += options_.weight * phi * phi;
@@ -46,6 +55,7 @@ class Neighbourhood {
   const UntangleProblem& problem_;
   const PolishOptions& options_;
   std::vector<std::vector<int>> bricks_of_node_;
+  std::vector<std::vector<int>> shells_of_node_;
   std::vector<std::vector<SurfaceNode>> surfaces_of_node_;
 };
 
@@ -57,6 +67,9 @@ std::vector<int> nodes_of_worst(const UntangleProblem& problem, const std::vecto
     if (scaled_jacobian(corners) < options.jacobian || size_of(corners) < options.size)
       list.insert(list.end(), brick.begin(), brick.end());
   }
+  for (const Quad& quad : problem.shells)
+    if (options.shell_size > 0 && shell_size(nodes, quad) < options.shell_size)
+      list.insert(list.end(), quad.begin(), quad.end());
   std::sort(list.begin(), list.end());
   list.erase(std::unique(list.begin(), list.end()), list.end());
   return list;

@@ -129,6 +129,26 @@ SurfaceError surface_error(const BoneMesh& mesh, const DistanceField& field) {
   return result;
 }
 
+double shell_size(const std::vector<Point>& nodes, const Quad& quad) {
+  const Point &a = nodes[quad[0]], &b = nodes[quad[1]], &c = nodes[quad[2]], &d = nodes[quad[3]];
+  const double longest = std::max({norm(b - a), norm(c - b), norm(d - c), norm(a - d)});
+  return 0.5 * norm(cross(c - a, d - b)) / longest;
+}
+
+namespace {
+
+double least_cortex_size(const BoneMesh& mesh) {
+  double least = 1e9;
+  for (std::size_t e = 0; e < mesh.bricks.size(); ++e)
+    if (mesh.brick_layer[e] == 1 || mesh.brick_layer[e] == 3)
+      least = std::min(least, size_of(corners_of(mesh.nodes, mesh.bricks[e])));
+  for (std::size_t q = 0; q < mesh.cortex.size(); ++q)
+    if (mesh.cortex[q] > 0) least = std::min(least, shell_size(mesh.nodes, mesh.surface[q]));
+  return least;
+}
+
+}  // namespace
+
 MeshReport measure(const BoneMesh& mesh) {
   MeshReport report;
   report.name = mesh.name;
@@ -143,6 +163,7 @@ MeshReport measure(const BoneMesh& mesh) {
     report.min_size = std::min(report.min_size, size_of(corners));
     report.volume += volume_of(corners);
   }
+  report.min_cortex_size = least_cortex_size(mesh);
   std::sort(jacobians.begin(), jacobians.end());
   report.min_scaled_jacobian = jacobians.front();
   report.p1_scaled_jacobian = jacobians[jacobians.size() / 100];

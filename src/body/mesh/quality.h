@@ -30,6 +30,9 @@ double volume_of(const Corners& corners);
 // [mm] volume / largest face: what a wave must cross
 double size_of(const Corners& corners);
 
+// [mm] area / longest side of a shell
+double shell_size(const std::vector<Point>& nodes, const Quad& quad);
+
 // [mm] mean length of a brick's edges along each of its three directions
 std::array<float, 3> edge_lengths(const Corners& corners);
 

@@ -116,8 +116,9 @@ BoneMesh skull_mesh(BoneShape& shape, const CellOptions& options, Resolution res
     }
     problem.bricks = mesh.bricks;
   }
+  const bool coarse = resolution == Resolution::coarse;
   fit(mesh, shape.field, problem,
-      {shape.table_volume, 100, resolution == Resolution::coarse ? 2.0 : 1.0});
+      {shape.table_volume, 100, coarse ? 2.0 : 1.0, coarse ? 2.4 : 1.1});
   return mesh;
 }
 

@@ -27,7 +27,8 @@ struct UntangleProblem {
   std::vector<std::array<float, 3>>
       target;  // [mm] edge lengths of each brick along its own three directions
   std::vector<SurfaceNode> surface;
-  double spacing = 1;  // [mm] h of (3)
+  std::vector<Quad> shells;  // faces that carry a shell, for the local stage
+  double spacing = 1;        // [mm] h of (3)
 };
 
 // one minimisation with weight w of (3); moves `nodes`
