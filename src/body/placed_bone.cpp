@@ -1,0 +1,35 @@
+#include "body/placed_bone.h"
+
+#include <fmt/format.h>
+
+#include <cctype>
+
+namespace fabrica::body {
+
+const char* name_of(Region region) {
+  static const char* const names[] = {"",        "head",   "neck", "thorax",
+                                      "abdomen", "pelvis", "arm",  "leg"};
+  return names[int(region)];
+}
+
+const char* name_of(Side side) {
+  return side == Side::right ? "right" : side == Side::left ? "left" : "mid";
+}
+
+int find_bone(const std::vector<PlacedBone>& bones, const std::string& name, Side side) {
+  for (std::size_t i = 0; i < bones.size(); ++i)
+    if (bones[i].mesh.name == name && bones[i].side == side) return int(i);
+  return -1;
+}
+
+std::string part_name(const PlacedBone& bone, const std::string& tissue) {
+  // the number of a rib or cartilage gets two digits: names sort as the body does
+  std::string name = bone.mesh.name;
+  if (name.starts_with("rib") || name.starts_with("costal_cartilage")) {
+    const std::size_t digit = name.find_first_of("0123456789");
+    if (name.size() - digit == 1) name.insert(digit, "0");
+  }
+  return fmt::format("{}.{}.{}.{}", name_of(bone.region), name_of(bone.side), name, tissue);
+}
+
+}  // namespace fabrica::body

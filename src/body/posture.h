@@ -1,0 +1,45 @@
+#pragma once
+// Joint angles by name. "knee.right.flexion" = 110 [deg]; the side is left out at midline joints
+// ("L4.flexion") and the coordinate where a joint has but one or its first is meant ("knee.right").
+// Groups spread over their chain: "lumbar.flexion", "thoracic.rotation", "neck.flexion". Without a
+// side, a paired joint sets both sides.
+#include <map>
+#include <string>
+#include <vector>
+
+#include "body/placement.h"
+
+namespace fabrica::body {
+
+// One rotation of a joint, a row of data/anatomy/joint_axes.csv.
+struct JointAxis {
+  std::string joint, coordinate;
+  Point axis;        // unit, right side or midline, standing body
+  double low, high;  // [deg] range from the standing posture
+  std::string source;
+};
+// One joint, a row of data/anatomy/joint_tree.csv, with its axes in order of (1) of skeleton.h.
+struct Joint {
+  std::string name, parent, child;
+  bool paired;
+  Point centre;  // [mm] standing, right side or midline
+  std::vector<JointAxis> axes;
+};
+// all joints, parents before children
+const std::vector<Joint>& joint_tree();
+
+struct Posture {
+  std::string name = "standing";
+  std::map<std::string, double> angle;  // [deg] by full name; absent: 0
+  Placement pelvis;                     // of the pelvis frame, to place the whole body
+  double get(const std::string& joint, Side side, const std::string& coordinate) const;
+};
+
+// "standing", "driver", "passenger", "supine"; throws BodyError that lists them
+Posture named_posture(const std::string& name);
+// Sets an angle from "knee.right=110". Throws BodyError for an unknown name (nearest names) or a
+// value out of range (the range and its source).
+void set_angle(Posture& posture, const std::string& assignment);
+void set_angle(Posture& posture, const std::string& name, double degrees);
+
+}  // namespace fabrica::body
