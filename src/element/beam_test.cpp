@@ -166,6 +166,64 @@ TEST_CASE("beam: roll-up into a circle") {
   CHECK(gap < 0.005 * length);
 }
 
+// A frame with clamped feet sways under a force P at the height of its girder (V39), columns h,
+// girder l, one EI: w = P h^3/(12 EI) (3k + 2)/(6k + 1), k = h/l (slope deflection of slender
+// members: no shear, no shortening).
+TEST_CASE_TEMPLATE("beams: a frame sways", E, BeamSchwer, BeamHughesLiu) {
+  const double h = 100, l = 150, b = 1, P = 1e-4;
+  const int n = std::is_same_v<E, BeamHughesLiu> ? 16 : 4;  // elements of a member
+  auto m = straight<E>(3 * n, 1, b);
+  for (int i = 0; i <= n; ++i) {
+    m.x[i] = {0, 0, h * i / n}, m.x[n + i] = {l * i / n, 0, h},
+    m.x[2 * n + i] = {l, 0, h - h * i / n};
+  }
+  m.fixed[0] = m.fixed[3 * n] = 0b111111;
+  m.start(0);
+  const double I = b * b * b * b / 12, k = h / l;
+  const double exact = P * h * h * h / (12 * 210 * I) * (3 * k + 2) / (6 * k + 1);
+  // two columns of stiffness P / w carry about the girder and half their own mass
+  const double first = std::sqrt(P / exact / (7.85e-6 * b * b * (l + h)));
+  m.damping = 2 * first;
+  while (m.time < 12 / first) m.cycle([&](auto& mesh) { mesh.force[n].x += P; });
+  MESSAGE("sway / exact = ", m.x[n].x / exact);
+  CHECK(std::abs(m.x[n].x / exact - 1) < 0.01);
+}
+
+// A hinged column under twice its Euler load P = pi^2 EI/L^2 buckles: a sine of amplitude a obeys
+// rho A a'' = (pi/L)^2 (2P - P) a, which grows as exp(s t), s = (pi/L)^2 sqrt(EI/(rho A)) (V39).
+// The column is first shortened evenly, which makes no waves.
+TEST_CASE_TEMPLATE("beams: a column buckles at the rate of Euler", E, BeamSchwer, BeamHughesLiu) {
+  const double length = 100, b = 2;
+  const int n = 20;
+  auto m = straight<E>(n, length, b);
+  m.start(0);
+  const double I = b * b * b * b / 12, strain = 2 * pi * pi * I / (b * b * length * length);
+  const int steps = 1000;
+  for (int k = 0; k < steps; ++k) {
+    for (int i = 0; i <= n; ++i)
+      m.v[i] = {-std::log1p(strain) / (steps * m.dt) * m.x[i].x, 0, 0}, m.x[i] += m.dt * m.v[i];
+    m.forces();
+  }
+  m.fixed[0] = m.fixed[n] = 0b101111;
+  for (int i = 1; i < n; ++i) m.fixed[i] = 0b101011;
+  MESSAGE("axial force / 2 P = ", -m.force[0].x / (2 * pi * pi * 210 * I / (length * length)));
+  const double rate = pi * pi / (length * length) * std::sqrt(210 * I / (7.85e-6 * b * b));
+  for (int i = 0; i <= n; ++i) {
+    m.v[i] = {0, 0, i % n == 0 ? 0 : 1e-6 * std::sin(pi * i / n)};
+    m.w[i] = {0, -1e-6 * pi / length * std::cos(pi * i / n), 0};
+  }
+  const double start = m.time;
+  double before = 0;
+  while (m.time < start + 6 / rate) {
+    m.cycle([](auto&) {});
+    if (before == 0 && m.time >= start + 4 / rate)
+      before = std::log(m.x[n / 2].z), m.external = m.time;
+  }
+  const double found = (std::log(m.x[n / 2].z) - before) / (m.time - m.external);
+  MESSAGE("growth rate / exact = ", found / rate);
+  CHECK(std::abs(found / rate - 1) < 0.01);
+}
+
 // First frequency of a cantilever, 3.516/L^2 sqrt(EI/(rho A)); the energy of the undamped motion
 // stays.
 TEST_CASE_TEMPLATE("beams: first frequency of a cantilever", E, BeamSchwer, BeamHughesLiu) {

@@ -40,6 +40,25 @@ void patch_mesh(M& m) {
                 {0, 8, 11, 3, 4, 12, 15, 7}};
 }
 
+// two by two by two cells with an inner node out of place, each cut into two wedges or six tetrahedra
+template <class M>
+void cut_patch_mesh(M& m) {
+  for (int k = 0; k < 3; ++k)
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < 3; ++i) m.add({0.5 * i, 0.5 * j, 0.5 * k});
+  m.x[13] += Vec3d{0.11, -0.07, 0.09};
+  static const int wedges[2][6] = {{0, 1, 3, 4, 5, 7}, {1, 2, 3, 5, 6, 7}};
+  static const int tets[6][4] = {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6}, {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}};
+  for (int cell = 0; cell < 8; ++cell) {
+    const int o = cell % 2 + cell / 2 % 2 * 3 + cell / 4 * 9;
+    const int c[8] = {o, o + 1, o + 4, o + 3, o + 9, o + 10, o + 13, o + 12};
+    if constexpr (M::N == 6)
+      for (const auto& w : wedges) m.elements.push_back({c[w[0]], c[w[1]], c[w[2]], c[w[3]], c[w[4]], c[w[5]]});
+    if constexpr (M::N == 4)
+      for (const auto& t : tets) m.elements.push_back({c[t[0]], c[t[1]], c[t[2]], c[t[3]]});
+  }
+}
+
 // linear displacement field imposed on all nodes in small steps; inner nodes must then be in equilibrium
 template <class E>
 void patch_test(int hourglass, double tolerance) {
@@ -47,10 +66,14 @@ void patch_test(int hourglass, double tolerance) {
   m.moduli();
   m.p.hourglass = hourglass, m.p.hourglass_coefficient = Real(0.05);
   m.p.linear_viscosity = m.p.quadratic_viscosity = 0;
-  if constexpr (E::corners == 8) patch_mesh(m);
+  std::vector<int> inner = {13};
+  if constexpr (E::corners == 8)
+    patch_mesh(m), inner = {8, 9, 10, 11, 12, 13, 14, 15};
+  else
+    cut_patch_mesh(m);
   m.start(0);
   // a small velocity gradient for one unit of time in 4 steps, so that terms of second order in the strain vanish
-  const double u = in_double ? 1e-10 : 1e-6;
+  const double u = in_double ? 1e-12 : 1e-6;
   const double g[3][3] = {{u, 0.5 * u, 0.2 * u}, {0.5 * u, u, 0.3 * u}, {0.2 * u, 0.3 * u, u}};
   m.dt = 0.25;
   for (std::size_t n = 0; n < m.x.size(); ++n)
@@ -65,10 +88,11 @@ void patch_test(int hourglass, double tolerance) {
       const StateView<Real> s{m.view(e).block + E::template point_at<ElasticLaw>(m.p) * block_size};
       worst = std::max(worst, std::abs(double(s.load(i)) - expected[i]) / expected[0]);
     }
+  double residual = 0;
+  for (int n : inner) residual = std::max(residual, norm(m.force[n]) / expected[0]);
+  MESSAGE("corners ", E::corners, ": error of stress ", worst, ", force on inner nodes ", residual);
   CHECK(worst < tolerance);
-  double residual = 0, scale = expected[0];
-  for (int n = 8; n < 16; ++n) residual = std::max(residual, norm(m.force[n]));
-  CHECK(residual < 10 * tolerance * scale);
+  CHECK(residual < tolerance);
 }
 
 // spin about an oblique axis for a full turn: no stress, no energy
@@ -124,11 +148,15 @@ bool stable(double nu, double factor) {
 
 }  // namespace
 
-// V16: u linear -> constant stress, and equilibrium inside, on distorted bricks
-TEST_CASE("patch test of distorted bricks") {
-  patch_test<Hex8<true>>(5, in_double ? 1e-10 : 2e-5);
-  patch_test<Hex8<true>>(3, in_double ? 1e-10 : 2e-5);
-  patch_test<Hex8Full>(2, in_double ? 1e-9 : 2e-5);
+// V16: u linear -> constant stress, and equilibrium inside, on distorted bricks, wedges and tetrahedra. In float the
+// bound is that of rounded positions and velocities.
+TEST_CASE("patch test of distorted bricks, wedges and tetrahedra") {
+  const double tolerance = in_double ? 1e-10 : 2e-5;
+  patch_test<Hex8<true>>(5, tolerance);
+  patch_test<Hex8<true>>(3, tolerance);
+  patch_test<Hex8Full>(2, tolerance);
+  patch_test<Penta6>(2, tolerance);
+  patch_test<Tet4>(2, tolerance);
 }
 
 // E2, V12: rigid rotation by one turn leaves stress below 1e-6 E
@@ -154,8 +182,9 @@ TEST_CASE("rigid rotation leaves no stress in solids") {
 
 // V04: the one-point cube is unstable above 0.577 L/c for nu = 0.4999
 TEST_CASE("stability limit of one free cube") {
-  CHECK(stable(0.4999, 0.570));
-  CHECK(!stable(0.4999, 0.600));
+  const double limit = 1 / std::sqrt(3.0);
+  CHECK(stable(0.4999, 0.99 * limit));
+  CHECK(!stable(0.4999, 1.01 * limit));
 }
 
 // the exact mean gradient is the derivative of the volume
@@ -209,7 +238,8 @@ TEST_CASE("assumed-strain hourglass control bends like a beam") {
     }
   }
   const double tip = m.x[4 * n].z, exact = P * L * L * L / (3 * E * I) + P * L / (G * 5. / 6);
-  CHECK(tip == doctest::Approx(exact).epsilon(0.015));
+  MESSAGE("tip / exact = ", tip / exact);
+  CHECK(tip == doctest::Approx(exact).epsilon(0.01));
 }
 
 // The driver's packs and one lane at a time must give the same bits.

@@ -52,24 +52,18 @@ void fill_globals(const Simulation& s, AnimationState& a) {
   a.kinetic_energy = e.kinetic, a.internal_energy = e.internal, a.total_energy = e.total();
   a.part_internal_energy = s.part_internal();
   a.part_hourglass_energy = s.part_hourglass();
-  a.part_kinetic_energy.assign(m.parts.size(), 0), a.part_mass.assign(m.parts.size(), 0);
+  const PartSums sums = part_sums(s);
+  a.part_kinetic_energy = sums.kinetic, a.part_mass = sums.mass;
   a.part_velocity.assign(3 * m.parts.size(), 0);
-  const Tiles& tiles = s.tiles();
   double mass = 0;
   Vec3d momentum{0, 0, 0};
-  for (const Tile& t : tiles.tiles) {
-    const int part = tiles.classes[t.tile_class].part;
-    for (int k = t.node_first; k < t.node_first + t.node_count; ++k) {
-      const Vec3d v = s.velocity(tiles.node[k]);
-      const double w = tiles.node_mass[k];
-      a.part_mass[part] += w, a.part_kinetic_energy[part] += 0.5 * w * dot(v, v);
-      for (int d = 0; d < 3; ++d) a.part_velocity[3 * part + d] += w * v[d];
-      mass += w, momentum += w * v;
+  for (std::size_t p = 0; p < m.parts.size(); ++p) {
+    mass += sums.mass[p];
+    for (int d = 0; d < 3; ++d) {
+      momentum[d] += sums.momentum[d][p];
+      if (sums.mass[p] > 0) a.part_velocity[3 * p + d] = sums.momentum[d][p] / sums.mass[p];
     }
   }
-  for (std::size_t p = 0; p < m.parts.size(); ++p)
-    if (a.part_mass[p] > 0)
-      for (int d = 0; d < 3; ++d) a.part_velocity[3 * p + d] /= a.part_mass[p];
   for (int d = 0; d < 3; ++d) a.momentum_velocity[d] = mass > 0 ? momentum[d] / mass : 0;
 }
 

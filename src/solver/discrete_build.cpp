@@ -1,4 +1,5 @@
 // Building the discrete elements from the model, and their restart record.
+#include <algorithm>
 #include <cmath>
 #include <istream>
 #include <ostream>
@@ -65,6 +66,15 @@ DiscreteElements::DiscreteElements(const Model& model, const State& state,
   add_beams(model, state, diagnostics);
 }
 
+bool DiscreteElements::turn_nodes(const Model& model) {
+  const auto torsional = [&](int part) {
+    return model.parts[std::size_t(part)].section >= 0 && section_of(model, part).torsional == 1;
+  };
+  const auto beam = [&](int part) { return is_discrete_beam(model, part); };
+  return std::any_of(model.discretes.part.begin(), model.discretes.part.end(), torsional) ||
+         std::any_of(model.beams.part.begin(), model.beams.part.end(), beam);
+}
+
 int DiscreteElements::local_node(int node) {
   if (node < 0) return -1;
   int& local = node_to_local_[std::size_t(node)];
@@ -129,10 +139,14 @@ void DiscreteElements::check_spring(const Model& model, const State& state, int 
   const Location where = model.parts[std::size_t(s.law)].where;
   const std::string who = element_text(model.discretes.id[std::size_t(i)]);
   const Vec3d line = s.node2 < 0 ? Vec3d{0, 0, 0} : state.nodes[std::size_t(s.node2)].x - s.ground;
-  if (s.torsional && state.spins.empty())
+  const auto turns = [&](int node) {
+    return node >= 0 && !state.spins.empty() &&
+           (state.spins[std::size_t(node)].inertia > 0 || state.owner[std::size_t(node)] == NodeOwner::rigid);
+  };
+  if (s.torsional && !turns(s.node1) && !turns(s.node2))
     diagnostics.error("spring-without-rotations", where, "ELEMENT_DISCRETE", "dro",
-                      who + " is torsional, but no node of the model has rotations",
-                      "attach it to shells, beams or rigid bodies");
+                      who + " is torsional, but none of its nodes has a rotary inertia",
+                      "attach it to shells, beams, rigid bodies or *ELEMENT_INERTIA");
   if (s.orientation < 0 && norm(line) == 0)
     diagnostics.warning("spring-without-axis", where, "ELEMENT_DISCRETE", "vid",
                         who + " has no length and no orientation: its axis follows the motion",
@@ -179,11 +193,6 @@ void DiscreteElements::add_beams(const Model& model, const State& state, Diagnos
         diagnostics.error("unsupported-scoor", model.parts[std::size_t(part)].where, "SECTION_BEAM",
                           "scoor", "SCOOR is not one of -3 to 3",
                           "use 0 for zero length, 2 or -2 for finite length");
-      if (state.spins.empty())
-        diagnostics.error("beam-without-rotations", model.parts[std::size_t(part)].where,
-                          "SECTION_BEAM", "elform",
-                          "discrete beams need rotations, but no node of the model has them",
-                          "give INER, or attach the beam to shells, beams or rigid bodies");
     }
     if (!beam_law_[std::size_t(part)]) continue;
     Beam b;

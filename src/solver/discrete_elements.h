@@ -32,6 +32,9 @@ class DiscreteElements {
   // not supported become errors in the diagnostics; elements with a free direction become warnings.
   DiscreteElements(const Model& model, const State& state, Diagnostics& diagnostics);
 
+  // whether the model has torsional springs or discrete beams, which need State::spins
+  static bool turn_nodes(const Model& model);
+
   int springs() const { return int(spring_.size()); }
   int beams() const { return int(beam_.size()); }
 

@@ -98,8 +98,8 @@ int solid_shape(const std::array<int, 10>& deck, std::array<int, 8>& nodes) {
     nodes = {n[0], n[1], n[2], n[4], -1, -1, -1, -1};
     return 4;
   }
-  if (n[4] == n[5] && n[6] == n[7]) {  // wedge (a b c d e e f f): triangles (a b e) and (d c f)
-    nodes = {n[0], n[1], n[4], n[3], n[2], n[6], -1, -1};
+  if (n[4] == n[5] && n[6] == n[7]) {  // wedge (a b c d e e f f): triangles (a e b) and (d f c), normals inwards
+    nodes = {n[0], n[4], n[1], n[3], n[6], n[2], -1, -1};
     return 6;
   }
   if (n[2] == n[3] && n[6] == n[7]) {  // wedge (a b c c d e f f): triangles (a b c) and (d e f)

@@ -4,17 +4,6 @@
 #include <cmath>
 
 namespace fabrica {
-namespace {
-
-void declare(HistoryDatabase& d, int length, std::initializer_list<const char*> names) {
-  for (const char* n : names) d.variables.push_back({n, length, false});
-}
-
-struct PartSums {
-  std::vector<double> kinetic, mass, momentum[3];
-};
-
-// kinetic energy, mass and momentum by part: a part owns the mass that its elements give to a node
 PartSums part_sums(const Simulation& s) {
   const Model& m = s.model();
   const Tiles& tiles = s.tiles();
@@ -43,8 +32,6 @@ PartSums part_sums(const Simulation& s) {
   }
   return p;
 }
-
-}  // namespace
 
 History::History(const Simulation& simulation) : simulation_(simulation) {
   add_glstat();

@@ -10,6 +10,18 @@
 
 namespace fabrica {
 
+// Kinetic energy, mass and momentum by part, at t(n): a part owns the mass that its elements give to a node, a rigid
+// part what its body has.
+struct PartSums {
+  std::vector<double> kinetic, mass, momentum[3];
+};
+PartSums part_sums(const Simulation& simulation);
+
+// adds variables of a database, each of `length` values
+inline void declare(HistoryDatabase& d, int length, std::initializer_list<const char*> names) {
+  for (const char* n : names) d.variables.push_back({n, length, false});
+}
+
 class History {
  public:
   // The databases that the model asks for, with their intervals.

@@ -4,13 +4,6 @@
 #include "solver/history.h"
 
 namespace fabrica {
-namespace {
-
-void declare(HistoryDatabase& d, int length, std::initializer_list<const char*> names) {
-  for (const char* n : names) d.variables.push_back({n, length, false});
-}
-
-}  // namespace
 
 void History::add_rwforc() {
   const RigidWalls& walls = simulation_.rigid_walls();

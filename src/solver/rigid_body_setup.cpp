@@ -189,8 +189,10 @@ RigidBodies::Mass RigidBodies::mass_of(const State& state, const Seed& seed) con
   }
   for (const NodalInertia& own : model_.inertias) {
     if (!std::binary_search(seed.nodes.begin(), seed.nodes.end(), own.node)) continue;
+    // in place of its mean, which the node carries
     const auto& i = own.inertia;
-    m.inertia = m.inertia + Mat3d{{{i[0], i[1], i[2]}, {i[1], i[3], i[4]}, {i[2], i[4], i[5]}}};
+    const double mean = (i[0] + i[3] + i[5]) / 3;
+    m.inertia = m.inertia + Mat3d{{{i[0] - mean, i[1], i[2]}, {i[1], i[3] - mean, i[4]}, {i[2], i[4], i[5] - mean}}};
   }
   return m;
 }

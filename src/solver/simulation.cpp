@@ -32,7 +32,6 @@ double force_scale(const Model& model, const State& state, double step) {
 
 Simulation::Simulation(const Model& model, const RunOptions& options, Diagnostics& diagnostics)
     : model_(model), team_(options.threads), tiles_(model, diagnostics), mass_scaling_(model.controls) {
-  const int n = model.nodes.size();
   end_time_ = options.end_time > 0 ? options.end_time : model.controls.end_time;
   set_up_masses(diagnostics);
   if (diagnostics.has_errors()) return;
@@ -41,11 +40,6 @@ Simulation::Simulation(const Model& model, const RunOptions& options, Diagnostic
   initial_step_ = smallest_element_step();
   mass_scaling_.start(model, state_, tiles_);
   if (mass_scaling_.active()) initial_step_ = std::max(initial_step_, mass_scaling_.step());
-  const double scale = force_scale(model, state_, initial_step_);
-  state_.interaction.resize(n, FixedScale::of(scale));
-  const bool rotations = !state_.spins.empty();
-  if (rotations) state_.interaction_moment.resize(n, FixedScale::of(scale * model_size()));
-
   rigid_bodies_ = std::make_unique<RigidBodies>(model, state_, diagnostics);
   contacts_ = std::make_unique<Contacts>(model, state_, contact_input(), diagnostics);
   for (const RigidTie& t : contacts_->rigid_ties()) rigid_bodies_->add_node(state_, t.part, t.node);
@@ -57,6 +51,8 @@ Simulation::Simulation(const Model& model, const RunOptions& options, Diagnostic
   damping_ = std::make_unique<MassDamping>(model, *rigid_bodies_);
   discrete_ = std::make_unique<DiscreteElements>(model, state_, diagnostics);
   discrete_->use_bodies(*rigid_bodies_);
+  if (diagnostics.has_errors()) return;
+  size_interaction(first_step());
   apply_initial_conditions(model, state_, *rigid_bodies_);
   node_constraints_->stop_supported(state_);
   part_internal_.assign(model.parts.size(), 0);
@@ -73,7 +69,9 @@ void Simulation::set_up_masses(Diagnostics& diagnostics) {
     mass[m.node] += m.mass;
     inertia[m.node] += (m.inertia[0] + m.inertia[3] + m.inertia[5]) / 3;
   }
-  const bool rotations = std::any_of(inertia.begin(), inertia.end(), [](double j) { return j > 0; });
+  // torsional springs and discrete beams turn with their nodes, whose inertia may be that of a body
+  const bool rotations = std::any_of(inertia.begin(), inertia.end(), [](double j) { return j > 0; }) ||
+                         DiscreteElements::turn_nodes(model_);
   state_.nodes.resize(n);
   state_.force.assign(n, Vec3d{0, 0, 0});
   state_.owner.assign(n, NodeOwner::free);
@@ -92,6 +90,29 @@ void Simulation::set_up_masses(Diagnostics& diagnostics) {
   }
   if (physical_mass_ <= 0)
     diagnostics.error("no-mass", {}, "", "", "the model has no mass", "Check densities and section properties");
+}
+
+// A step near the first one, before any force is known; models without deformable elements take what their springs
+// ask for, or what resolves their motion.
+double Simulation::first_step() {
+  double step = initial_step_;
+  if (step >= 1e29) {
+    size_interaction(1);
+    discrete_->forces(model_, state_, team_);  // the tangents; nothing has moved, so that no memory is touched
+    step = discrete_->time_step(state_);
+    if (model_.controls.time_step_curve >= 0)
+      step = std::min(step, model_.curves[model_.controls.time_step_curve].at(0));
+    if (step >= 1e29) step = end_time_ / 1000;
+  }
+  return step;
+}
+
+// the sums of contacts, springs and joints, empty, in fixed point fit for forces that act within a step
+void Simulation::size_interaction(double step) {
+  const std::size_t n = state_.nodes.size();
+  const double scale = force_scale(model_, state_, step);
+  state_.interaction.resize(n, FixedScale::of(scale));
+  if (!state_.spins.empty()) state_.interaction_moment.resize(n, FixedScale::of(scale * model_size()));
 }
 
 void Simulation::step(const Sampler& sampler) {

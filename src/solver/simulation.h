@@ -103,6 +103,8 @@ class Simulation {
   void update_energies();
   void set_up_masses(Diagnostics& diagnostics);
   double smallest_element_step();
+  double first_step();
+  void size_interaction(double step);
   TimeStepOwner worst_element(int tile) const;
   double model_size() const;
   ContactInput contact_input() const;

@@ -354,7 +354,7 @@ void Tiles::sum_partials(State& state, int a, int b) const {
       }
     }
     state.force[n] = f;
-    if (rotations) state.moment[n] = m;
+    if (!state.spins.empty()) state.moment[n] = m;
   }
 }
 

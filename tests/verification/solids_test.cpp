@@ -11,7 +11,8 @@ constexpr double rho = 7.85e-6, young = 200;
 
 // all nodes of the model, moved by velocity
 template <class Field>
-void give_velocities(Deck& deck, const std::vector<int>& ids, const std::vector<Vec3d>& at, Field field) {
+void give_velocities(Deck& deck, const std::vector<int>& ids, const std::vector<Vec3d>& at,
+                     Field field) {
   deck.key("INITIAL_VELOCITY_NODE");
   for (std::size_t i = 0; i < ids.size(); ++i) {
     const Vec3d v = field(at[i]);
@@ -20,15 +21,15 @@ void give_velocities(Deck& deck, const std::vector<int>& ids, const std::vector<
 }
 }  // namespace
 
-// V16 for bricks and for tetrahedra in one cube whose nodes start with a linear
+// V16 for bricks, tetrahedra and wedges in one cube whose nodes start with a linear
 // velocity v = G x: every element has the strain rate sym G. After one step the stress is
 // lambda tr e + 2 mu e with e = dt sym G, equal in all elements (second order in e: 1e-6 of it).
-TEST_CASE("V16: patches of bricks and of tetrahedra have one stress") {
-  for (int shape : {8, 4}) {
+TEST_CASE("V16: patches of bricks, of tetrahedra and of wedges have one stress") {
+  for (int shape : {8, 4, 6}) {
     Deck deck;
     const double nu = 0.3;
     deck.end(1).constant_step(1.0 / 1048576, 9);
-    deck.key("SECTION_SOLID").card(1, shape == 8 ? 1 : 10);
+    deck.key("SECTION_SOLID").card(1, shape == 8 ? 1 : shape == 4 ? 10 : 15);
     deck.key("MAT_ELASTIC").card(1, rho, young, nu);
     deck.part(1, 1, 1).no_bulk_viscosity();
     std::vector<Vec3d> at;
@@ -42,25 +43,35 @@ TEST_CASE("V16: patches of bricks and of tetrahedra have one stress") {
           at.push_back(p), ids.push_back(deck.node(p));
         }
     const auto id = [&](int i, int j, int k) { return ids[std::size_t((k * 3 + j) * 3 + i)]; };
-    static const int tets[6][4] = {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6}, {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}};
+    static const int tets[6][4] = {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6},
+                                   {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}};
     for (int k = 0; k < n; ++k)
       for (int j = 0; j < n; ++j)
         for (int i = 0; i < n; ++i) {
-          const std::array<int, 8> c = {id(i, j, k), id(i + 1, j, k), id(i + 1, j + 1, k), id(i, j + 1, k),
-                                        id(i, j, k + 1), id(i + 1, j, k + 1), id(i + 1, j + 1, k + 1), id(i, j + 1, k + 1)};
+          const std::array<int, 8> c = {
+              id(i, j, k),     id(i + 1, j, k),     id(i + 1, j + 1, k),     id(i, j + 1, k),
+              id(i, j, k + 1), id(i + 1, j, k + 1), id(i + 1, j + 1, k + 1), id(i, j + 1, k + 1)};
           if (shape == 8) deck.solid(1, c);
+          // wedges with an edge above: the face 0 1 5 4 cut in two, and so its opposite
+          if (shape == 6) {
+            deck.solid(1, {c[0], c[1], c[2], c[3], c[4], c[4], c[7], c[7]});
+            deck.solid(1, {c[5], c[4], c[7], c[6], c[1], c[1], c[2], c[2]});
+          }
           if (shape == 4)
             for (const auto& t : tets)
-              deck.solid(1, {c[t[0]], c[t[1]], c[t[2]], c[t[3]], c[t[3]], c[t[3]], c[t[3]], c[t[3]]});
+              deck.solid(1,
+                         {c[t[0]], c[t[1]], c[t[2]], c[t[3]], c[t[3]], c[t[3]], c[t[3]], c[t[3]]});
         }
     const double G[3][3] = {{1, 0.3, -0.2}, {0.1, -0.5, 0.4}, {0.6, -0.1, 0.8}};
     give_velocities(deck, ids, at, [&](const Vec3d& x) {
-      return Vec3d(G[0][0] * x.x + G[0][1] * x.y + G[0][2] * x.z, G[1][0] * x.x + G[1][1] * x.y + G[1][2] * x.z,
+      return Vec3d(G[0][0] * x.x + G[0][1] * x.y + G[0][2] * x.z,
+                   G[1][0] * x.x + G[1][1] * x.y + G[1][2] * x.z,
                    G[2][0] * x.x + G[2][1] * x.y + G[2][2] * x.z);
     });
     Run run(deck);
     run.step(), run.step();
-    const double dt = 1.0 / 1048576, lambda = young * nu / ((1 + nu) * (1 - 2 * nu)), mu = young / (2 + 2 * nu);
+    const double dt = 1.0 / 1048576, lambda = young * nu / ((1 + nu) * (1 - 2 * nu)),
+                 mu = young / (2 + 2 * nu);
     const double trace = G[0][0] + G[1][1] + G[2][2];
     const double xx = dt * (lambda * trace + 2 * mu * G[0][0]), xy = dt * mu * (G[0][1] + G[1][0]);
     double worst = 0, spread = 0;
@@ -84,8 +95,9 @@ TEST_CASE("V12: a spinning block of bricks") {
   deck.key("SECTION_SOLID").card(1, 1);
   deck.key("MAT_ELASTIC").card(1, rho, young * 1e-3, 0.3);
   deck.part(1, 1, 1);
-  const Grid g = bricks(deck, 2, 2, 2, [](int i, int j, int k) { return 10.0 * Vec3d(i - 1, j - 1, k - 1); },
-                        [](int, int, int) { return 0; }, 1);
+  const Grid g = bricks(
+      deck, 2, 2, 2, [](int i, int j, int k) { return 10.0 * Vec3d(i - 1, j - 1, k - 1); },
+      [](int, int, int) { return 0; }, 1);
   deck.key("INITIAL_VELOCITY_GENERATION").card(1, 2, omega).card(0, 0, 0, 0, 0, 1.0);
   Run run(deck);
   const auto momentum = [&] {
@@ -101,7 +113,8 @@ TEST_CASE("V12: a spinning block of bricks") {
   double worst = 0;
   while (run.step())
     if (run.state().cycle % 500 == 0)
-      for (int e : g.elements) worst = std::max(worst, std::abs(run.solid(e).stress[0].xx) / (young * 1e-3));
+      for (int e : g.elements)
+        worst = std::max(worst, std::abs(run.solid(e).stress[0].xx) / (young * 1e-3));
   report("stress/E, angular momentum - 1", {worst, momentum() / start - 1});
   // centrifugal stress is below rho w^2 R^2; on top of it 1e-6 of E
   CHECK(worst < 1e-6 + rho * omega * omega * 300 / (young * 1e-3));
@@ -113,12 +126,14 @@ TEST_CASE("V12: a spinning block of bricks") {
 TEST_CASE("V19: confined compression of a nearly incompressible block") {
   Deck deck;
   const double nu = 0.4999, E = 0.01, K = E / (3 * (1 - 2 * nu));
-  deck.end(1.0).no_bulk_viscosity();
+  deck.end(0.5).no_bulk_viscosity();
   deck.key("SECTION_SOLID").card(1, 1);
-  deck.key("MAT_ELASTIC").card(1, 1e-6, E, nu);
+  // heavy, so that some eighty steps do: each rounds the stress, and errs by (dV/V)^2/3
+  deck.key("MAT_ELASTIC").card(1, 1e-3, E, nu);
   deck.part(1, 1, 1);
-  const Grid g = bricks(deck, 2, 2, 2, [](int i, int j, int k) { return Vec3d(i, j, k); },
-                        [](int, int, int) { return 4; }, 1);
+  const Grid g = bricks(
+      deck, 2, 2, 2, [](int i, int j, int k) { return Vec3d(i, j, k); },
+      [](int, int, int) { return 4; }, 1);
   // every layer is driven, so that no wave disturbs: v_z = -0.1 z
   deck.curve(1, {{0, -0.1}, {2, -0.1}});
   for (int k = 0; k <= 2; ++k) {
@@ -131,13 +146,14 @@ TEST_CASE("V19: confined compression of a nearly incompressible block") {
   Run run(deck);
   run.finish();
   // stress belongs to the step before the last displacement
-  const double volume = 1 + (run.displacement(g.at(0, 0, 2)).z - run.state().dt * run.v(g.at(0, 0, 2)).z) / 2;
+  const double volume =
+      1 + (run.displacement(g.at(0, 0, 2)).z - run.state().dt * run.v(g.at(0, 0, 2)).z) / 2;
   double worst = 0;
   for (int e : g.elements) {
     const Sym3<double> s = run.solid(e).stress[0];
     worst = std::max(worst, std::abs((s.xx + s.yy + s.zz) / 3 / (K * std::log(volume)) - 1));
   }
   report("volume, pressure error", {volume, worst});
-  CHECK(volume < 0.91);
-  CHECK(worst < tolerance(1e-6, 1e-5));
+  CHECK(volume < 0.96);
+  CHECK(worst < 1e-6);
 }
