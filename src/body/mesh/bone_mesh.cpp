@@ -116,7 +116,7 @@ Made make(const std::string& name, Resolution resolution) {
               : recipe.maker == "skull" ? skull_mesh(shape, cell_options(recipe, h), resolution)
               : solid                   ? solid_cortex_mesh(recipe, shape, h, recipe.solid_cortex)
                                         : mesh_solid(shape.field, cell_options(recipe, h),
-                                                     {shape.table_volume, 100, 0.3 * h, shell_wish(resolution)});
+                                                     {shape.table_volume, 200, 0.3 * h, shell_wish(resolution)});
   made.mesh.name = name;
   made.mesh.resolution = resolution;
   if (!solid) made.mesh.cortex = cortex_of(made.mesh, name, shape);
