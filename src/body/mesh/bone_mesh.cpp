@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <map>
 #include <mutex>
 #include <set>
@@ -99,13 +99,19 @@ void check_gates(const MeshReport& r, Resolution resolution) {
                        most_error));
 }
 
+double thread_seconds() {
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
+
 struct Made {
   BoneMesh mesh;
   MeshReport report;
 };
 
 Made make(const std::string& name, Resolution resolution) {
-  const auto start = std::chrono::steady_clock::now();
+  const double start = thread_seconds();
   const BoneRecipe& recipe = bone_recipe(name);
   const double h = recipe.spacing(resolution);
   BoneShape shape =
@@ -128,25 +134,27 @@ Made make(const std::string& name, Resolution resolution) {
   const SurfaceError error = surface_error(made.mesh, shape.field);
   made.report.error_mean = error.mean;
   made.report.error_p95 = error.p95;
-  made.report.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  made.report.seconds = thread_seconds() - start;
   check_gates(made.report, resolution);
   return made;
 }
 
-// each bone is made once at unit scale; scaling moves its nodes
+// Each bone is made once at unit scale; scaling moves its nodes. Several threads may make different
+// bones.
 const Made& made(const std::string& name, Resolution resolution) {
-  static std::map<std::pair<std::string, Resolution>, Made> cache;
+  struct Entry {
+    std::once_flag once;
+    Made made;
+  };
+  static std::map<std::pair<std::string, Resolution>, Entry> cache;  // entries never move
   static std::mutex mutex;
-  const std::lock_guard lock(mutex);
-  auto [at, is_new] = cache.try_emplace({name, resolution});
-  if (is_new) try {
-      at->second = make(name, resolution);
-    } catch (...) {
-      cache.erase(at);
-      throw;
-    }
-  return at->second;
+  Entry* entry = nullptr;
+  {
+    const std::lock_guard lock(mutex);
+    entry = &cache[{name, resolution}];
+  }
+  std::call_once(entry->once, [&] { entry->made = make(name, resolution); });
+  return entry->made;
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ struct MeshReport {
   double volume = 0,
          table_volume = 0;  // [mm3] of the bricks; of the scaled table (0: the table states none)
   double error_mean = 0, error_p95 = 0;  // [mm] distance of the mesh's surface to the table's
-  double seconds = 0;                    // time to make the mesh
+  double seconds = 0;                    // of one core, to make the mesh
 };
 
 // The mesh of one bone; throws BodyError naming bone, stage and figure when the name is unknown or

@@ -16,6 +16,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr int contour_harmonics = 6;
 constexpr int contour_points = 72;
+constexpr double most_offset = 1.0;  // [mm] of a surface to hold its table's volume
 
 std::string path_of(const std::string& file) { return "anatomy/bones/" + file + ".csv"; }
 
@@ -118,17 +119,6 @@ IndexRow index_row(const std::string& bone) {
   return result;
 }
 
-// the outward offset for which the field holds the volume: the volume grows with the offset by the
-// surface's area
-void match_volume(DistanceField& field, double volume) {
-  constexpr double most = 1.0;  // [mm]
-  double low = -most, high = most;
-  for (int i = 0; i < 12; ++i) {
-    field.offset = 0.5 * (low + high);
-    (field.volume() < volume ? low : high) = field.offset;
-  }
-}
-
 int letters_apart(const std::string& a, const std::string& b) {  // Levenshtein
   std::vector<int> row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = int(j);
@@ -196,13 +186,13 @@ BoneShape bone_shape(const std::string& name, double grid, double margin) {
   if (!stacked) loft.emplace(read_stations(name), 0.8);
   if (loft && index.volume > 0) loft->match_volume(index.volume);
   BoneShape shape{stacked ? DistanceField::of_slices(read_slices(name), index.axes, grid, margin)
-                          : DistanceField::of_triangles(loft->surface(48, 2.0), grid, margin),
+                          : DistanceField::of_triangles(loft->surface(36, 3.0), grid, margin),
                   loft,
                   index.volume,
                   {},
                   {}};
   if (index.volume > 0)
-    match_volume(shape.field, index.volume);
+    shape.field.match_volume(index.volume, most_offset);
   else
     shape.table_volume = shape.field.volume();
   const Box box = shape.field.box();

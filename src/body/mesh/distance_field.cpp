@@ -169,14 +169,19 @@ DistanceField DistanceField::of_triangles(const TriangleSurface& surface, double
       first[d] = std::max(0, int(std::ceil((low - field.origin_[d]) / spacing)));
       last[d] = std::min(field.count_[d] - 1, int(std::floor((high - field.origin_[d]) / spacing)));
     }
+    const Point across = cross(b - a, c - a);
+    const Point normal = (1 / std::max(norm(across), 1e-12)) * across;
     const double twice_area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
     for (int j = first[1]; j <= last[1]; ++j)
       for (int i = first[0]; i <= last[0]; ++i) {
         const Point foot{field.origin_.x + i * spacing, field.origin_.y + j * spacing, 0};
         for (int k = first[2]; k <= last[2]; ++k) {
           const Point p{foot.x, foot.y, field.origin_.z + k * spacing};
-          const Point d = p - closest_on_triangle(p, a, b, c);
-          field.at(i, j, k) = std::min(field.at(i, j, k), float(norm(d)));
+          float& nearest = field.at(i, j, k);
+          const double height = dot(normal, p - a);
+          if (height * height >= nearest * nearest)
+            continue;  // not even the triangle's plane is nearer
+          nearest = std::min(nearest, float(norm(p - closest_on_triangle(p, a, b, c))));
         }
         // half-open edges: a column through an edge shared by two triangles meets exactly one of
         // them
@@ -260,11 +265,39 @@ Box DistanceField::box() const {
   return box;
 }
 
+namespace {
+
+// share of a cell of the dual grid that is inside: full where phi < -s/2, empty where phi > s/2,
+// linear between
+double inside_share(double phi, double spacing) {
+  return std::clamp(0.5 - phi / spacing, 0.0, 1.0);
+}
+
+}  // namespace
+
 double DistanceField::volume() const {
-  // a cell of the dual grid is full where phi < -s/2 and empty where phi > s/2, linear between
   double sum = 0;
-  for (const float phi : phi_) sum += std::clamp(0.5 - (phi - offset) / spacing_, 0.0, 1.0);
+  for (const float phi : phi_) sum += inside_share(phi - offset, spacing_);
   return sum * spacing_ * spacing_ * spacing_;
+}
+
+void DistanceField::match_volume(double volume, double most) {
+  // values so deep or so far out that no offset changes their share are counted once
+  std::vector<float> near;
+  double deep = 0;
+  for (const float phi : phi_)
+    if (phi < -most - spacing_)
+      deep += 1;
+    else if (phi < most + spacing_)
+      near.push_back(phi);
+  const double wanted = volume / (spacing_ * spacing_ * spacing_);
+  double low = -most, high = most;
+  for (int i = 0; i < 14; ++i) {
+    offset = 0.5 * (low + high);
+    double sum = deep;
+    for (const float phi : near) sum += inside_share(phi - offset, spacing_);
+    (sum < wanted ? low : high) = offset;
+  }
 }
 
 }  // namespace fabrica::body

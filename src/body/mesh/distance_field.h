@@ -62,6 +62,9 @@ class DistanceField {
   const Axes& axes() const { return axes_; }
   double spacing() const { return spacing_; }
   double volume() const;  // [mm3] where phi < 0
+  // sets the outward offset, at most `most` mm either way, for which the field holds the volume
+  // [mm3]
+  void match_volume(double volume, double most);
 
  private:
   DistanceField(const Box& box, const Axes& axes, double spacing, double margin);
