@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/bench.h"
+#include "app/body.h"
 #include "app/run.h"
 #include "app/show.h"
 
@@ -39,10 +40,12 @@ int main(int argc, char** argv) {
   fabrica::CheckCommand check;
   fabrica::BenchCommand bench;
   fabrica::ShowCommands show;
+  fabrica::BodyCommand body;
   add_run(app, run);
   add_check(app, check);
   fabrica::add_bench(app, bench);
   fabrica::add_show(app, show);
+  fabrica::add_body(app, body);
   try {
     app.parse(argc, argv);
   } catch (const CLI::RuntimeError& e) {

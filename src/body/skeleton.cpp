@@ -137,6 +137,12 @@ Point Skeleton::joint_centre(const std::string& joint, Side side) const {
   return at->second;
 }
 
+Point Skeleton::carried(const std::string& name, Side side, const Point& standing) const {
+  const Side key = has_frame(name, side) ? side : Side::midline;
+  return frame(name, key)(
+      scaled(standing_frame(name, key).inverse(standing), subject_.scale_of(carrier_of(name))));
+}
+
 Placement Skeleton::bone(const std::string& bone, const std::string& carrier, Side side) const {
   if (has_frame(bone, side)) return frame(bone, side);  // fingers, talus
   const Placement& place = has_frame(carrier, side) ? frame(carrier, side) : frame(carrier);
@@ -144,21 +150,18 @@ Placement Skeleton::bone(const std::string& bone, const std::string& carrier, Si
   // head of the rib in the thorax and where the vertebra carries it; front end with the sternum
   static const Table marks("anatomy/landmarks.csv");
   const std::string vertebra = "T" + bone.substr(3);
-  const Placement thorax0 = standing_frame("thorax", Side::midline),
-                  vertebra0 = standing_frame(vertebra, Side::midline);
   Point head{0, 0, 0}, front{0, 0, 0};
   for (int r = 0; r < marks.rows(); ++r) {
-    Point p{0, 0, 0};
-    if (marks.text(r, "name") != bone + "_head" && marks.text(r, "name") != bone + "_anterior_end")
-      continue;
-    p = {marks.number(r, "x_stand"), marks.number(r, "y_stand"), marks.number(r, "z_stand")};
-    (marks.text(r, "name") == bone + "_head" ? head : front) = side == Side::left ? mirror(p) : p;
+    const std::string& mark = marks.text(r, "name");
+    if (mark != bone + "_head" && mark != bone + "_anterior_end") continue;
+    const Point p{marks.number(r, "x_stand"), marks.number(r, "y_stand"),
+                  marks.number(r, "z_stand")};
+    (mark == bone + "_head" ? head : front) = side == Side::left ? mirror(p) : p;
   }
-  const Point carried =
-      frame(vertebra)(scaled(vertebra0.inverse(head), subject_.scale_of(vertebra)));
-  const Point head_now = place(scaled(thorax0.inverse(head), subject_.scale_of("thorax")));
-  const Point front_now = place(scaled(thorax0.inverse(front), subject_.scale_of("thorax")));
-  return between_two(place, head_now, carried, front_now, front_now);
+  const Point at_vertebra = carried(vertebra, Side::midline, head),
+              front_now = carried("thorax", Side::midline, front);
+  return between_two(place, carried("thorax", Side::midline, head), at_vertebra, front_now,
+                     front_now);
 }
 
 }  // namespace fabrica::body

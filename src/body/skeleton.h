@@ -33,6 +33,9 @@ class Skeleton {
   // placement of a bone whose carrier is `frame`; that of ribs and cartilages follows vertebra and
   // sternum
   Placement bone(const std::string& bone, const std::string& frame, Side side) const;
+  // where a point of the standing man of the tables [mm, global] is, carried and scaled with a
+  // frame of a side or, where the frame has none, of the midline
+  Point carried(const std::string& frame, Side side, const Point& standing) const;
   const Subject& subject() const { return subject_; }
 
  private:

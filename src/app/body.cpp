@@ -1,0 +1,94 @@
+#include "app/body.h"
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+
+#include "body/assembly.h"
+#include "body/body.h"
+#include "body/landmarks.h"
+#include "deck/writer.h"
+#include "model/check.h"
+
+namespace fabrica {
+namespace {
+
+using body::BodyError;
+
+body::BodyOptions options_of(const BodyCommand& c) {
+  if (c.only != "skeleton")
+    throw BodyError(fmt::format(
+        "--only {}: the body is made of its skeleton so far; the only choice is skeleton", c.only));
+  body::BodyOptions options;
+  options.subject = body::make_subject(c.sex, c.stature, c.mass);
+  options.posture = body::named_posture(c.posture);
+  for (const std::string& assignment : c.set) body::set_angle(options.posture, assignment);
+  options.resolution = body::resolution_named(c.resolution);
+  options.joints = !c.no_joints;
+  options.only = c.bones;
+  if (!c.quiet)
+    options.progress = [](const std::string& bone) { fmt::print(stderr, "\r{:<24}", bone); };
+  return options;
+}
+
+void write_file(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream out(path);
+  out << text;
+  if (!out) throw BodyError(fmt::format("cannot write {}", path.string()));
+}
+
+}  // namespace
+
+int body_command(const BodyCommand& c) {
+  if (c.list) {
+    for (const std::string& name : body::bone_names()) fmt::print("{}\n", name);
+    return 0;
+  }
+  const auto start = std::chrono::steady_clock::now();
+  const body::Body made = body::build_body(options_of(c));
+  Diagnostics diagnostics;
+  Builder builder(diagnostics);
+  const body::AssembledBody assembled = body::assemble(made, {}, builder);
+  const std::unique_ptr<Model> model = builder.finish();
+  if (!c.quiet) fmt::print(stderr, "\r{:<24}\r", "");
+  for (const Diagnostic& d : diagnostics.list()) fmt::print(stderr, "{}\n", diagnostics.format(d));
+  if (diagnostics.has_errors()) return 1;
+  const std::filesystem::path deck = c.out, folder = deck.parent_path();
+  if (!folder.empty()) std::filesystem::create_directories(folder);
+  std::ofstream out(deck);
+  write_deck(*model, out);
+  if (!out) throw BodyError(fmt::format("cannot write {}", deck.string()));
+  write_file(folder / (deck.stem().string() + "_landmarks.csv"),
+             body::landmarks_csv(made.skeleton));
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  fmt::print("{}: {} bones, {} parts, {} nodes, {} solids, {} shells in {:.1f} s\n", c.out,
+             made.bones.size(), assembled.parts.size(), model->nodes.size(), model->solids.size(),
+             model->shells.size(), seconds);
+  return 0;
+}
+
+void add_body(CLI::App& app, BodyCommand& c) {
+  auto* cmd = app.add_subcommand("body", "Make a human body in a posture as a keyword deck");
+  cmd->add_option("--sex", c.sex, "male")->capture_default_str();
+  cmd->add_option("--stature", c.stature, "body height [mm]")->capture_default_str();
+  cmd->add_option("--mass", c.mass, "body mass [kg]")->capture_default_str();
+  cmd->add_option("--posture", c.posture, "standing, driver, passenger or supine")
+      ->capture_default_str();
+  cmd->add_option("--set", c.set,
+                  "joint angle [degrees], such as knee.right=110 or lumbar.flexion=20");
+  cmd->add_option("--resolution", c.resolution, "coarse, standard or fine")->capture_default_str();
+  cmd->add_option("--only", c.only, "what to make: skeleton")->capture_default_str();
+  cmd->add_option("--bones", c.bones, "only these bones, as --list names them")->delimiter(',');
+  cmd->add_option("--out", c.out, "deck to write; landmarks stand beside it")
+      ->capture_default_str();
+  cmd->add_flag("--no-joints", c.no_joints, "bones alone, without what joins them");
+  cmd->add_flag("--list", c.list, "list the bones");
+  cmd->add_flag("--quiet", c.quiet, "no progress");
+  cmd->callback([&c] { throw CLI::RuntimeError(body_command(c)); });
+}
+
+}  // namespace fabrica

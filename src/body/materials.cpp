@@ -1,0 +1,75 @@
+#include "body/materials.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <sstream>
+
+namespace fabrica::body {
+
+Materials::Materials(Builder& builder) : builder_(builder), table_("materials.csv") {
+  for (int r = 0; r < table_.rows(); ++r) row_of_[table_.text(r, "row")] = r;
+}
+
+Card& Materials::card(const std::string& keyword, const std::string& title) {
+  Card& card = builder_.add_card(keyword);
+  card.options = {"TITLE"};
+  card.title = title;
+  card.set("mid", double(++last_material_));
+  return card;
+}
+
+std::int64_t Materials::next_curve(const std::string& title,
+                                   const std::vector<std::pair<double, double>>& points) {
+  Card& curve = builder_.add_card("DEFINE_CURVE");
+  curve.options = {"TITLE"};
+  curve.title = title;
+  curve.set("lcid", double(++last_curve_));
+  for (const auto& [x, y] : points) curve.add_row({x, y});
+  return last_curve_;
+}
+
+std::int64_t Materials::use(const std::string& row) {
+  if (const auto made = ids_.find(row); made != ids_.end()) return made->second;
+  const auto at = row_of_.find(row);
+  if (at == row_of_.end()) throw BodyError(fmt::format("data/materials.csv has no row '{}'", row));
+  const int r = at->second;
+  Card& c = card(table_.text(r, "keyword"), table_.text(r, "tissue"));
+  std::istringstream fields(table_.text(r, "fields"));
+  for (std::string item; fields >> item;) {
+    const std::size_t equals = item.find('=');
+    if (equals == std::string::npos || !c.has_field(item.substr(0, equals)))
+      table_.fail(r, fmt::format("'{}' is no field of {}; write field=value", item,
+                                 table_.text(r, "keyword")));
+    c.set(item.substr(0, equals), std::atof(item.c_str() + equals + 1));
+  }
+  // fracture: only `delete` acts in the run
+  if (table_.text(r, "criterion") == "delete")
+    c.set(c.has_field("fail") ? "fail" : "fs", table_.number(r, "value"));
+  return ids_[row] = last_material_;
+}
+
+std::int64_t Materials::add(const std::string& title, const Law& law) {
+  std::int64_t curve = 0;
+  if (!law.curve_field.empty()) curve = next_curve(title, law.curve);
+  Card& c = card(law.keyword, title);
+  for (const auto& [field, value] : law.fields) c.set(field, value);
+  if (curve) c.set(law.curve_field, double(curve));
+  return last_material_;
+}
+
+BoneMaterial bone_material(const std::string& bone) {
+  static const Table table("anatomy/bone_materials.csv");
+  for (int r = 0; r < table.rows(); ++r) {
+    const std::string& prefix = table.text(r, "prefix");
+    // one letter stands for a vertebra: C, T or L before a number
+    const bool vertebra =
+        prefix.size() > 1 || (bone.size() > 1 && std::isdigit(static_cast<unsigned char>(bone[1])));
+    if (bone.starts_with(prefix) && vertebra)
+      return {table.text(r, "cortical"), table.text(r, "trabecular"),
+              table.number(r, "rigid_at_coarse") != 0};
+  }
+  throw BodyError(fmt::format("anatomy/bone_materials.csv has no prefix of bone '{}'", bone));
+}
+
+}  // namespace fabrica::body

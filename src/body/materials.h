@@ -1,0 +1,43 @@
+#pragma once
+// Rows of data/materials.csv as cards of a model: each row becomes one material, made when it is
+// first used.
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "body/piece.h"
+#include "body/tables.h"
+#include "model/model.h"
+
+namespace fabrica::body {
+
+class Materials {
+ public:
+  explicit Materials(Builder& builder);
+  // id of the material of a row; throws BodyError when the table has no such row or a field is not
+  // of its keyword
+  std::int64_t use(const std::string& row);
+  // id of a new material of a law, with its curve
+  std::int64_t add(const std::string& title, const Law& law);
+
+ private:
+  Card& card(const std::string& keyword, const std::string& title);
+  std::int64_t next_curve(const std::string& title,
+                          const std::vector<std::pair<double, double>>& points);
+
+  Builder& builder_;
+  Table table_;
+  std::map<std::string, int> row_of_;
+  std::map<std::string, std::int64_t> ids_;
+  std::int64_t last_material_ = 0, last_curve_ = 0;
+};
+
+// materials of a bone, a row of data/anatomy/bone_materials.csv
+struct BoneMaterial {
+  std::string cortical, trabecular;
+  bool rigid_at_coarse = false;
+};
+// throws BodyError when no prefix fits
+BoneMaterial bone_material(const std::string& bone);
+
+}  // namespace fabrica::body
