@@ -1,0 +1,228 @@
+#include "signal/channel_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "signal/iso_mme.h"
+#include "signal/units.h"
+
+namespace fabrica {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string trimmed(const std::string& s) {
+  const std::size_t a = s.find_first_not_of(" \t\r\""), b = s.find_last_not_of(" \t\r\"");
+  return a == std::string::npos ? "" : s.substr(a, b - a + 1);
+}
+
+struct Table {
+  std::string path;
+  std::vector<std::string> names;
+  std::vector<std::vector<std::string>> rows;
+  std::vector<int> lines;  // of the rows
+};
+
+std::vector<std::string> cells(const std::string& line) {
+  const char separator = line.find(';') != std::string::npos ? ';' : ',';
+  std::vector<std::string> out;
+  std::size_t at = 0;
+  for (;;) {
+    const std::size_t end = line.find(separator, at);
+    out.push_back(trimmed(line.substr(at, end == std::string::npos ? end : end - at)));
+    if (end == std::string::npos) return out;
+    at = end + 1;
+  }
+}
+
+Table read_table(const std::string& path) {
+  std::ifstream in(path);
+  if (!in) throw SignalError("no-such-file", "cannot open " + path, "Check the path");
+  Table t{path, {}, {}, {}};
+  std::string line;
+  for (int number = 1; std::getline(in, line); ++number) {
+    if (trimmed(line).empty() || line[0] == '#') continue;
+    std::vector<std::string> row = cells(line);
+    if (t.names.empty()) {
+      t.names = std::move(row);
+      continue;
+    }
+    if (row.size() != t.names.size())
+      throw SignalError("ragged-signal",
+                        fmt::format("{}:{}: {} cells, the header has {}", path, number, row.size(),
+                                    t.names.size()),
+                        "Give each row one cell for each column");
+    t.rows.push_back(std::move(row));
+    t.lines.push_back(number);
+  }
+  if (t.names.size() < 2)
+    throw SignalError("empty-signal", path + " has fewer than two columns",
+                      "Give a header line and rows of numbers");
+  return t;
+}
+
+// the column of that name, with or without unit; -1 if there is none
+int find_column(const Table& t, const std::string& name) {
+  for (std::size_t c = 0; c < t.names.size(); ++c)
+    if (t.names[c] == name) return int(c);
+  for (std::size_t c = 0; c < t.names.size(); ++c)
+    if (name_and_unit(t.names[c]).name == name) return int(c);
+  return -1;
+}
+
+[[noreturn]] void no_such_column(const Table& t, const std::string& name) {
+  std::string all;
+  for (const std::string& n : t.names) all += (all.empty() ? "" : ", ") + n;
+  throw SignalError("no-such-channel", fmt::format("{} has no column '{}'", t.path, name),
+                    "There are: " + all);
+}
+
+int column(const Table& t, const std::string& name) {
+  const int c = find_column(t, name);
+  if (c < 0) no_such_column(t, name);
+  return c;
+}
+
+double number(const Table& t, std::size_t row, int column) {
+  const std::string& cell = t.rows[row][column];
+  char* end = nullptr;
+  const double value = std::strtod(cell.c_str(), &end);
+  if (*end != '\0')
+    throw SignalError(
+        "not-a-number",
+        fmt::format("{}:{}: '{}' in column '{}'", t.path, t.lines[row], cell, t.names[column]),
+        "Write a number, or leave the cell empty to drop the row");
+  return value;
+}
+
+// rows in which a column holds a value
+struct Condition {
+  int column = -1;
+  std::string value;
+};
+
+Signal make_signal(const Table& t, int x, int y, const Condition& only = {}) {
+  const NameAndUnit of_x = name_and_unit(t.names[x]), of_y = name_and_unit(t.names[y]);
+  Signal s{of_y.name, of_y.unit, of_x.unit, {}, {}};
+  for (std::size_t row = 0; row < t.rows.size(); ++row) {
+    if (only.column >= 0 && t.rows[row][only.column] != only.value) continue;
+    if (t.rows[row][x].empty() || t.rows[row][y].empty()) continue;
+    s.x.push_back(number(t, row, x));
+    s.y.push_back(number(t, row, y));
+  }
+  if (only.column >= 0 && s.x.empty())
+    throw SignalError(
+        "no-such-row",
+        fmt::format("{}: no row has {} = {}", t.path, t.names[only.column], only.value),
+        "Check the value after @");
+  return s;
+}
+
+// "y", "x:y", "y@column=value"; a name may itself hold a colon
+Signal select(const Table& t, std::string wanted) {
+  Condition only;
+  if (const std::size_t at = wanted.find('@'); at != std::string::npos) {
+    const std::size_t equal = wanted.find('=', at);
+    if (equal == std::string::npos)
+      throw SignalError("no-such-row",
+                        "'" + wanted.substr(at) + "' is not of the form @column=value",
+                        "Write it so");
+    only = {column(t, wanted.substr(at + 1, equal - at - 1)), wanted.substr(equal + 1)};
+    wanted.resize(at);
+  }
+  if (wanted.empty()) return make_signal(t, 0, 1, only);
+  if (const int y = find_column(t, wanted); y >= 0) return make_signal(t, 0, y, only);
+  for (std::size_t colon = wanted.find(':'); colon != std::string::npos;
+       colon = wanted.find(':', colon + 1)) {
+    const int x = find_column(t, wanted.substr(0, colon)),
+              y = find_column(t, wanted.substr(colon + 1));
+    if (x >= 0 && y >= 0) return make_signal(t, x, y, only);
+  }
+  no_such_column(t, wanted);
+}
+
+bool is_csv(const std::string& path) { return fs::path(path).extension() == ".csv"; }
+
+// file and what follows its colon
+std::pair<std::string, std::string> split(const std::string& where) {
+  if (fs::exists(where)) return {where, ""};
+  for (std::size_t colon = where.find(':'); colon != std::string::npos;
+       colon = where.find(':', colon + 1))
+    if (fs::exists(where.substr(0, colon)))
+      return {where.substr(0, colon), where.substr(colon + 1)};
+  if (const std::size_t at = where.find('@');
+      at != std::string::npos && fs::exists(where.substr(0, at)))
+    return {where.substr(0, at), where.substr(at)};
+  throw SignalError("no-such-file", "cannot find " + where,
+                    "Name an existing file, as table.csv:column");
+}
+
+}  // namespace
+
+NameAndUnit name_and_unit(const std::string& header) {
+  for (const auto& [open, close] : {std::pair('[', ']'), std::pair('(', ')')}) {
+    const std::size_t a = header.find(open), b = header.find(close, a == std::string::npos ? 0 : a);
+    if (a == std::string::npos || b == std::string::npos) continue;
+    const std::string unit = plain_unit(trimmed(header.substr(a + 1, b - a - 1)));
+    if (known_unit(unit)) return {trimmed(header.substr(0, a)), unit};
+  }
+  // name_unit, where a slash is written as an underscore: velocity_m_s, omega_rad_s
+  for (std::size_t at = header.find('_'); at != std::string::npos; at = header.find('_', at + 1)) {
+    std::string unit = header.substr(at + 1);
+    if (unit == "1" || at == 0) continue;  // a number in a name
+    std::replace(unit.begin(), unit.end(), '_', '/');
+    if (known_unit(unit)) return {header.substr(0, at), unit};
+  }
+  return {header, ""};
+}
+
+Signal read_signal(const std::string& where) {
+  const auto [file, wanted] = split(where);
+  Signal s = is_csv(file) ? select(read_table(file), wanted) : read_mme_channel(file, wanted);
+  if (s.size() < 2)
+    throw SignalError("empty-signal", fmt::format("{} holds {} samples", where, s.size()),
+                      "A curve needs at least two");
+  return s;
+}
+
+std::vector<Signal> read_all_signals(const std::string& file) {
+  if (!fs::exists(file)) throw SignalError("no-such-file", "cannot find " + file, "Check the path");
+  if (!is_csv(file)) return read_mme_test(file);
+  const Table t = read_table(file);
+  std::vector<Signal> out;
+  for (std::size_t c = 1; c < t.names.size(); ++c) out.push_back(make_signal(t, 0, int(c)));
+  return out;
+}
+
+void write_csv(const std::string& path, const std::vector<Signal>& signals,
+               const std::string& comment) {
+  for (const Signal& s : signals)
+    if (s.x != signals[0].x)
+      throw SignalError("different-time-base",
+                        fmt::format("'{}' and '{}' differ in x", signals[0].name, s.name),
+                        "Resample them to one step, or write them to files of their own");
+  std::ofstream out(path);
+  if (!comment.empty()) out << "# " << comment << '\n';
+  auto titled = [](const std::string& name, const std::string& unit) {
+    return unit.empty() ? name : fmt::format("{} [{}]", name, unit);
+  };
+  std::string text = titled(signals[0].x_unit == "mm" ? "displacement" : "time", signals[0].x_unit);
+  for (const Signal& s : signals) text += "," + titled(s.name, s.unit);
+  text += '\n';
+  for (std::size_t i = 0; i < signals[0].size(); ++i) {
+    text += fmt::format("{:.12g}", signals[0].x[i]);
+    for (const Signal& s : signals) text += fmt::format(",{:.12g}", s.y[i]);
+    text += '\n';
+  }
+  out << text;
+  out.flush();
+  if (!out)
+    throw SignalError("cannot-write", "cannot write " + path,
+                      "Check the folder and the space left");
+}
+
+}  // namespace fabrica
