@@ -102,6 +102,18 @@ TEST_CASE("scaling a bone scales its volume by the product of the factors and ke
   CHECK(report(scaled).min_scaled_jacobian > 0.30);
 }
 
+TEST_CASE("bones keep their shape of bricks over the sizes of people") {
+  for (const std::string& name : bone_names())
+    for (const Point& scale : {Point{1.1, 0.95, 1.05}, Point{0.95, 1.1, 1.0},
+                               Point{1.05, 0.95, 1.12}, Point{0.9, 0.9, 0.88}}) {
+      CAPTURE(name);
+      const MeshReport figures = report(mesh_bone({name, Resolution::coarse, scale}));
+      CHECK(figures.min_scaled_jacobian >= 0.30);
+      CHECK(figures.p1_scaled_jacobian >= 0.42);
+    }
+  CHECK_THROWS_AS(mesh_bone({"L3", Resolution::coarse, {3, 0.5, 1}}), BodyError);
+}
+
 TEST_CASE("an unknown bone is refused with the nearest name") {
   CHECK_THROWS_WITH_AS(mesh_bone({"femurr", Resolution::coarse}),
                        "no bone is called 'femurr'; the nearest name is 'femur'", BodyError);

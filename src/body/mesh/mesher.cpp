@@ -71,6 +71,7 @@ void fit(BoneMesh& mesh, DistanceField& field, const UntangleProblem& problem,
     untangle(problem, mesh.nodes, options.end_weight, iterations);
   }
   PolishOptions local;
+  local.jacobian = options.jacobian;
   local.size = options.least_size;
   // a round bar of radius r has V / A = r / 2 and, with eight shells around it, shells of 0.75 r:
   // slender bones have no room for larger ones
