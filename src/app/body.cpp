@@ -3,15 +3,18 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
-#include <chrono>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 
 #include "body/assembly.h"
 #include "body/body.h"
+#include "body/goals.h"
 #include "body/landmarks.h"
+#include "body/measures.h"
 #include "deck/writer.h"
 #include "model/check.h"
+#include "solver/simulation.h"
 
 namespace fabrica {
 namespace {
@@ -26,6 +29,7 @@ body::BodyOptions options_of(const BodyCommand& c) {
   options.subject = body::make_subject(c.sex, c.stature, c.mass);
   options.posture = body::named_posture(c.posture);
   for (const std::string& assignment : c.set) body::set_angle(options.posture, assignment);
+  if (!c.goals.empty()) body::solve(options.posture, options.subject, body::read_goals(c.goals));
   options.resolution = body::resolution_named(c.resolution);
   options.joints = !c.no_joints;
   options.only = c.bones;
@@ -40,6 +44,23 @@ void write_file(const std::filesystem::path& path, const std::string& text) {
   if (!out) throw BodyError(fmt::format("cannot write {}", path.string()));
 }
 
+// penetrations and ties at the start, from the solver's first search
+body::OutsideMeasures search_contacts(const Model& model, double seconds,
+                                      Diagnostics& diagnostics) {
+  body::OutsideMeasures outside;
+  outside.seconds = seconds;
+  if (model.contacts.empty()) return outside;
+  Simulation simulation(model, {}, diagnostics);
+  if (diagnostics.has_errors()) return outside;
+  simulation.step();
+  const InitialReport& r = simulation.contacts().initial_report();
+  outside.searched = true;
+  outside.penetrating_nodes = r.penetrating_nodes,
+  outside.largest_penetration = r.largest_penetration;
+  outside.untied_nodes = int(r.untied_nodes.size());
+  return outside;
+}
+
 }  // namespace
 
 int body_command(const BodyCommand& c) {
@@ -47,12 +68,13 @@ int body_command(const BodyCommand& c) {
     for (const std::string& name : body::bone_names()) fmt::print("{}\n", name);
     return 0;
   }
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   const body::Body made = body::build_body(options_of(c));
   Diagnostics diagnostics;
   Builder builder(diagnostics);
   const body::AssembledBody assembled = body::assemble(made, {}, builder);
   const std::unique_ptr<Model> model = builder.finish();
+  const double seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
   if (!c.quiet) fmt::print(stderr, "\r{:<24}\r", "");
   for (const Diagnostic& d : diagnostics.list()) fmt::print(stderr, "{}\n", diagnostics.format(d));
   if (diagnostics.has_errors()) return 1;
@@ -63,11 +85,13 @@ int body_command(const BodyCommand& c) {
   if (!out) throw BodyError(fmt::format("cannot write {}", deck.string()));
   write_file(folder / (deck.stem().string() + "_landmarks.csv"),
              body::landmarks_csv(made.skeleton));
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  fmt::print("{}: {} bones, {} parts, {} nodes, {} solids, {} shells in {:.1f} s\n", c.out,
-             made.bones.size(), assembled.parts.size(), model->nodes.size(), model->solids.size(),
-             model->shells.size(), seconds);
+  const CheckReport check = check_model(*model, diagnostics);
+  const body::OutsideMeasures outside = search_contacts(*model, seconds, diagnostics);
+  write_file(folder / (deck.stem().string() + "_measures.md"),
+             body::measures_text(made, assembled, *model, check, outside));
+  fmt::print("{}: {} bones, {} parts, {} nodes, {} solids, {} shells in {:.1f} s of one core\n",
+             c.out, made.bones.size(), assembled.parts.size(), model->nodes.size(),
+             model->solids.size(), model->shells.size(), seconds);
   return 0;
 }
 
@@ -80,6 +104,9 @@ void add_body(CLI::App& app, BodyCommand& c) {
       ->capture_default_str();
   cmd->add_option("--set", c.set,
                   "joint angle [degrees], such as knee.right=110 or lumbar.flexion=20");
+  cmd->add_option("--goals", c.goals,
+                  "file of goals: H-point, torso angle, head level, hands, feet")
+      ->check(CLI::ExistingFile);
   cmd->add_option("--resolution", c.resolution, "coarse, standard or fine")->capture_default_str();
   cmd->add_option("--only", c.only, "what to make: skeleton")->capture_default_str();
   cmd->add_option("--bones", c.bones, "only these bones, as --list names them")->delimiter(',');

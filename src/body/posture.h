@@ -31,7 +31,8 @@ const std::vector<Joint>& joint_tree();
 struct Posture {
   std::string name = "standing";
   std::map<std::string, double> angle;  // [deg] by full name; absent: 0
-  Placement pelvis;                     // of the pelvis frame, to place the whole body
+  Placement pelvis;                     // moves the whole body; its translation is the H-point
+  std::string goals;                    // name of the goals that it was solved for
   double get(const std::string& joint, Side side, const std::string& coordinate) const;
 };
 
