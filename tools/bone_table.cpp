@@ -45,15 +45,16 @@ void print(Resolution resolution, const char* title) {
   fmt::print("\n## {}\n\n", title);
   fmt::print(
       "| bone | maker | bricks | nodes | SJ min | SJ 99 % | size mm | cortex mm | volume cm3 | off "
-      "% | error mm | Euler |\n");
-  fmt::print("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+      "% | error mm | missing mm | offset mm | Euler |\n");
+  fmt::print(
+      "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
   for (const MeshReport& r : reports)
     fmt::print(
         "| {} | {} | {} | {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:+.1f} | {:.2f} / "
         "{:.2f} | {} |\n",
         r.name, r.maker, r.bricks, r.nodes, r.min_scaled_jacobian, r.p1_scaled_jacobian, r.min_size,
         r.min_cortex_size, r.volume / 1000, 100 * (r.volume / r.table_volume - 1), r.error_mean,
-        r.error_p95, r.euler);
+        r.error_p95, r.missing_p95, r.offset, r.euler);
   const auto least = [&](auto of) {
     return *std::min_element(reports.begin(), reports.end(),
                              [&](const auto& a, const auto& b) { return of(a) < of(b); });

@@ -147,6 +147,8 @@ Made make(const std::string& name, Resolution resolution) {
   const SurfaceError error = surface_error(made.mesh, shape.field);
   made.report.error_mean = error.mean;
   made.report.error_p95 = error.p95;
+  made.report.missing_p95 = missing_p95(made.mesh, shape.field);
+  made.report.offset = shape.field.offset;
   made.report.seconds = thread_seconds() - start;
   check_gates(made.report, resolution);
   return made;
@@ -190,6 +192,8 @@ MeshReport report(const BoneMesh& mesh) {
   const double scale = std::cbrt(mesh.scale.x * mesh.scale.y * mesh.scale.z);
   report.error_mean = unit.error_mean * scale;
   report.error_p95 = unit.error_p95 * scale;
+  report.missing_p95 = unit.missing_p95 * scale;
+  report.offset = unit.offset;
   report.seconds = unit.seconds;
   return report;
 }

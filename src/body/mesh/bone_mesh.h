@@ -50,7 +50,10 @@ struct MeshReport {
   double volume = 0,
          table_volume = 0;  // [mm3] of the bricks; of the scaled table (0: the table states none)
   double error_mean = 0, error_p95 = 0;  // [mm] distance of the mesh's surface to the table's
-  double seconds = 0;                    // of one core, to make the mesh
+  double missing_p95 =
+      0;               // [mm] the other way: 95 % of the table's surface is nearer to the mesh's
+  double offset = 0;   // [mm] by which the table's surface was moved out to hold its volume
+  double seconds = 0;  // of one core, to make the mesh
 };
 
 // The mesh of one bone; throws BodyError naming bone, stage and figure when the name is unknown or

@@ -53,6 +53,8 @@ std::vector<float> plane_distance(const Slice& slice, const PlaneGrid& grid) {
   return phi;
 }
 
+}  // namespace
+
 Point closest_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c) {
   const Point ab = b - a, ac = c - a, ap = p - a;
   const double d1 = dot(ab, ap), d2 = dot(ac, ap);
@@ -72,8 +74,6 @@ Point closest_on_triangle(const Point& p, const Point& a, const Point& b, const 
   const double sum = 1 / (va + vb + vc);
   return a + (vb * sum) * ab + (vc * sum) * ac;
 }
-
-}  // namespace
 
 DistanceField::DistanceField(const Box& box, const Axes& axes, double spacing, double margin)
     : axes_(axes), spacing_(spacing) {
@@ -248,6 +248,22 @@ double DistanceField::value(const Point& p, Point& gradient) const {
   if (far > 0) slope = (1 / far) * outside;
   gradient = axes_.to_bone(slope);
   return c0 + t[2] * (c1 - c0) + far - offset;
+}
+
+std::vector<Point> DistanceField::surface_points(int stride) const {
+  std::vector<Point> points;
+  const int steps[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (int k = 0; k + 1 < count_[2]; k += stride)
+    for (int j = 0; j + 1 < count_[1]; j += stride)
+      for (int i = 0; i + 1 < count_[0]; i += stride)
+        for (const auto& d : steps) {
+          const double a = at(i, j, k), b = at(i + d[0], j + d[1], k + d[2]);
+          if ((a < 0) == (b < 0)) continue;
+          const double t = a / (a - b);
+          points.push_back(
+              axes_.to_bone(origin_ + spacing_ * Point{i + t * d[0], j + t * d[1], k + t * d[2]}));
+        }
+  return points;
 }
 
 Box DistanceField::box() const {

@@ -35,6 +35,9 @@ struct TriangleSurface {
   std::vector<std::array<int, 3>> triangles;  // outward normal, closed
 };
 
+// the point of triangle abc that is nearest to p
+Point closest_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c);
+
 class DistanceField {
  public:
   // slices in rising height; spacing of the grid and margin around the contours in mm
@@ -57,6 +60,10 @@ class DistanceField {
   double value(const Point& p) const;
   double value(const Point& p, Point& gradient) const;
   double offset = 0;  // [mm] the surface is moved outward by this much
+
+  // points of the surface (offset left out) where it crosses the lines of the grid, every
+  // `stride`-th point of it
+  std::vector<Point> surface_points(int stride) const;
 
   Box box() const;  // of the solid itself, in grid axes
   const Axes& axes() const { return axes_; }

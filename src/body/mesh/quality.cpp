@@ -129,6 +129,69 @@ SurfaceError surface_error(const BoneMesh& mesh, const DistanceField& field) {
   return result;
 }
 
+namespace {
+
+// boundary quads sorted into cubes, to find the nearest one
+class QuadBins {
+ public:
+  explicit QuadBins(const BoneMesh& mesh) : mesh_(mesh) {
+    for (std::size_t q = 0; q < mesh.surface.size(); ++q) {
+      std::array<int, 3> low{1 << 20, 1 << 20, 1 << 20}, high{-(1 << 20), -(1 << 20), -(1 << 20)};
+      for (const int n : mesh.surface[q]) {
+        const auto bin = bin_of(mesh.nodes[n]);
+        for (int a = 0; a < 3; ++a)
+          low[a] = std::min(low[a], bin[a]), high[a] = std::max(high[a], bin[a]);
+      }
+      for (int i = low[0]; i <= high[0]; ++i)
+        for (int j = low[1]; j <= high[1]; ++j)
+          for (int k = low[2]; k <= high[2]; ++k) bins_[{i, j, k}].push_back(int(q));
+    }
+  }
+  // [mm] at most `reach` cubes away
+  double distance(const Point& p) const {
+    constexpr int reach = 5;
+    const auto bin = bin_of(p);
+    double nearest = reach * width;
+    for (int ring = 0; ring <= reach && (ring - 1) * width < nearest; ++ring)
+      for (int i = -ring; i <= ring; ++i)
+        for (int j = -ring; j <= ring; ++j)
+          for (int k = -ring; k <= ring; ++k) {
+            if (std::max({std::abs(i), std::abs(j), std::abs(k)}) != ring) continue;
+            const auto at = bins_.find({bin[0] + i, bin[1] + j, bin[2] + k});
+            if (at == bins_.end()) continue;
+            for (const int q : at->second)
+              nearest = std::min(nearest, distance(p, mesh_.surface[q]));
+          }
+    return nearest;
+  }
+
+ private:
+  static constexpr double width = 4;  // [mm]
+  static std::array<int, 3> bin_of(const Point& p) {
+    return {int(std::floor(p.x / width)), int(std::floor(p.y / width)),
+            int(std::floor(p.z / width))};
+  }
+  double distance(const Point& p, const Quad& q) const {
+    const Point &a = mesh_.nodes[q[0]], &b = mesh_.nodes[q[1]], &c = mesh_.nodes[q[2]],
+                &d = mesh_.nodes[q[3]];
+    return std::min(norm(p - closest_on_triangle(p, a, b, c)),
+                    norm(p - closest_on_triangle(p, a, c, d)));
+  }
+  const BoneMesh& mesh_;
+  std::map<std::array<int, 3>, std::vector<int>> bins_;
+};
+
+}  // namespace
+
+double missing_p95(const BoneMesh& mesh, const DistanceField& field) {
+  const QuadBins bins(mesh);
+  std::vector<double> distances;
+  for (const Point& p : field.surface_points(2)) distances.push_back(bins.distance(p));
+  if (distances.empty()) return 0;
+  std::sort(distances.begin(), distances.end());
+  return distances[distances.size() * 95 / 100];
+}
+
 double shell_size(const std::vector<Point>& nodes, const Quad& quad) {
   const Point &a = nodes[quad[0]], &b = nodes[quad[1]], &c = nodes[quad[2]], &d = nodes[quad[3]];
   const double longest = std::max({norm(b - a), norm(c - b), norm(d - c), norm(a - d)});

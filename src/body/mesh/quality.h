@@ -47,6 +47,10 @@ struct SurfaceError {
 // |phi| at 3 x 3 points of each boundary quad, weighted by area
 SurfaceError surface_error(const BoneMesh& mesh, const DistanceField& field);
 
+// [mm] what 95 % of the field's surface (offset left out) stay within of the mesh's: large where
+// the mesh lacks a process
+double missing_p95(const BoneMesh& mesh, const DistanceField& field);
+
 // fills all geometric figures of a report but those that need the bone's table
 MeshReport measure(const BoneMesh& mesh);
 
