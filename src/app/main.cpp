@@ -6,6 +6,7 @@
 #include "app/body.h"
 #include "app/run.h"
 #include "app/show.h"
+#include "app/signals.h"
 
 namespace {
 
@@ -46,6 +47,8 @@ int main(int argc, char** argv) {
   fabrica::add_bench(app, bench);
   fabrica::add_show(app, show);
   fabrica::add_body(app, body);
+  fabrica::SignalCommands signals;
+  fabrica::add_signals(app, signals);
   try {
     app.parse(argc, argv);
   } catch (const CLI::RuntimeError& e) {

@@ -258,11 +258,11 @@ std::vector<PlotCurve> find_curves(const PlotOptions& o) {
   return out;
 }
 
-void render_plot(const PlotOptions& o) {
+void draw_curves(const PlotOptions& o, const std::vector<PlotCurve>& curves) {
   const std::string extension = fs::path(o.output).extension().string();
   if (extension != ".png" && extension != ".svg")
     throw std::runtime_error("a chart is written as .png or .svg, not as " + o.output);
-  const Drawing drawing = make_chart(o, find_curves(o));
+  const Drawing drawing = make_chart(o, curves);
   if (extension == ".svg") {
     std::ofstream out(o.output);
     out << svg(drawing);
@@ -275,5 +275,7 @@ void render_plot(const PlotOptions& o) {
   if (const std::string error = draw(drawing, o.output); !error.empty())
     throw std::runtime_error(error);
 }
+
+void render_plot(const PlotOptions& o) { draw_curves(o, find_curves(o)); }
 
 }  // namespace fabrica

@@ -33,7 +33,12 @@ struct PlotCurve {
 // name is not unique or not there.
 std::vector<PlotCurve> find_curves(const PlotOptions& options);
 
-// Draws the chart. Errors as above, and for an output that is neither .png nor .svg.
+// Draws curves that are at hand. Errors for an output that is neither .png nor .svg, or cannot be
+// written.
+void draw_curves(const PlotOptions& options, const std::vector<PlotCurve>& curves);
+
+// Finds the curves and draws them. Errors as above, and for an output that is neither .png nor
+// .svg.
 void render_plot(const PlotOptions& options);
 
 }  // namespace fabrica

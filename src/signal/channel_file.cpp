@@ -114,6 +114,7 @@ Signal make_signal(const Table& t, int x, int y, const Condition& only = {}) {
     s.x.push_back(number(t, row, x));
     s.y.push_back(number(t, row, y));
   }
+  if (only.column >= 0) s.name += " " + only.value;
   if (only.column >= 0 && s.x.empty())
     throw SignalError(
         "no-such-row",
@@ -146,6 +147,10 @@ Signal select(const Table& t, std::string wanted) {
 }
 
 bool is_csv(const std::string& path) { return fs::path(path).extension() == ".csv"; }
+
+bool is_time(const std::string& unit) {
+  return unit.empty() || unit == "s" || unit == "ms" || unit == "us";
+}
 
 // file and what follows its colon
 std::pair<std::string, std::string> split(const std::string& where) {
@@ -210,7 +215,7 @@ void write_csv(const std::string& path, const std::vector<Signal>& signals,
   auto titled = [](const std::string& name, const std::string& unit) {
     return unit.empty() ? name : fmt::format("{} [{}]", name, unit);
   };
-  std::string text = titled(signals[0].x_unit == "mm" ? "displacement" : "time", signals[0].x_unit);
+  std::string text = titled(is_time(signals[0].x_unit) ? "time" : "x", signals[0].x_unit);
   for (const Signal& s : signals) text += "," + titled(s.name, s.unit);
   text += '\n';
   for (std::size_t i = 0; i < signals[0].size(); ++i) {
