@@ -12,6 +12,7 @@
 #include "body/goals.h"
 #include "body/landmarks.h"
 #include "body/measures.h"
+#include "body/surroundings.h"
 #include "deck/writer.h"
 #include "model/check.h"
 #include "solver/simulation.h"
@@ -72,7 +73,10 @@ int body_command(const BodyCommand& c) {
   const body::Body made = body::build_body(options_of(c));
   Diagnostics diagnostics;
   Builder builder(diagnostics);
-  const body::AssembledBody assembled = body::assemble(made, {}, builder);
+  body::AssemblyOptions assembly;
+  assembly.end_time = body::trial_time(c.trial);
+  body::AssembledBody assembled = body::assemble(made, assembly, builder);
+  body::surround(c.trial, made, assembled, builder);
   const std::unique_ptr<Model> model = builder.finish();
   const double seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
   if (!c.quiet) fmt::print(stderr, "\r{:<24}\r", "");
@@ -110,6 +114,8 @@ void add_body(CLI::App& app, BodyCommand& c) {
   cmd->add_option("--resolution", c.resolution, "coarse, standard or fine")->capture_default_str();
   cmd->add_option("--only", c.only, "what to make: skeleton")->capture_default_str();
   cmd->add_option("--bones", c.bones, "only these bones, as --list names them")->delimiter(',');
+  cmd->add_option("--trial", c.trial, "what surrounds it: none, seat, drop or sternum")
+      ->capture_default_str();
   cmd->add_option("--out", c.out, "deck to write; landmarks stand beside it")
       ->capture_default_str();
   cmd->add_flag("--no-joints", c.no_joints, "bones alone, without what joins them");

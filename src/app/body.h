@@ -11,7 +11,7 @@ namespace fabrica {
 
 struct BodyCommand {
   std::string sex = "male", posture = "standing", resolution = "coarse", goals, out = "body.k",
-              only = "skeleton", around;
+              only = "skeleton", trial = "none";
   double stature = 1750, mass = 77;
   std::vector<std::string> set, bones;
   bool pictures = false, list = false, quiet = false, no_joints = false;

@@ -34,11 +34,13 @@ Quality brick_quality(const Body& body) {
   };
   for (const PlacedBone& bone : body.bones)
     for (const auto& brick : bone.mesh.bricks) take(corners_of(bone.nodes, brick), bone.mesh.name);
+  std::vector<std::vector<Point>> piece_nodes;
   for (const Piece& piece : body.between.pieces) {
-    std::vector<Point> nodes;
+    std::vector<Point>& nodes = piece_nodes.emplace_back();
     for (const PieceNode& n : piece.nodes)
-      nodes.push_back(n.bone >= 0 ? body.bones[std::size_t(n.bone)].nodes[std::size_t(n.node)]
-                                  : n.x);
+      nodes.push_back(n.bone >= 0    ? body.bones[std::size_t(n.bone)].nodes[std::size_t(n.node)]
+                      : n.piece >= 0 ? piece_nodes[std::size_t(n.piece)][std::size_t(n.node)]
+                                     : n.x);
     for (const auto& brick : piece.bricks) take(corners_of(nodes, brick), piece.name);
   }
   std::sort(all.begin(), all.end());
