@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "app/body_pictures.h"
 #include "body/assembly.h"
 #include "body/body.h"
 #include "body/goals.h"
@@ -93,6 +94,7 @@ int body_command(const BodyCommand& c) {
   const body::OutsideMeasures outside = search_contacts(*model, seconds, diagnostics);
   write_file(folder / (deck.stem().string() + "_measures.md"),
              body::measures_text(made, assembled, *model, check, outside));
+  if (c.pictures) draw_body(made, (folder / (deck.stem().string() + "_pictures")).string());
   fmt::print("{}: {} bones, {} parts, {} nodes, {} solids, {} shells in {:.1f} s of one core\n",
              c.out, made.bones.size(), assembled.parts.size(), model->nodes.size(),
              model->solids.size(), model->shells.size(), seconds);
@@ -118,6 +120,7 @@ void add_body(CLI::App& app, BodyCommand& c) {
       ->capture_default_str();
   cmd->add_option("--out", c.out, "deck to write; landmarks stand beside it")
       ->capture_default_str();
+  cmd->add_flag("--pictures", c.pictures, "also draw it, whole and region by region");
   cmd->add_flag("--no-joints", c.no_joints, "bones alone, without what joins them");
   cmd->add_flag("--list", c.list, "list the bones");
   cmd->add_flag("--quiet", c.quiet, "no progress");

@@ -1,5 +1,6 @@
 #pragma once
 // Still pictures of animation states as PNG, drawn off screen: no display is needed.
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -26,6 +27,11 @@ struct PictureOptions {
   double zoom = 1;
   int width = 1200, height = 800;
   std::optional<bool> edges;             // element edges; default: for up to 20000 faces
+  // where faces meet at less than this they are shaded as one smooth surface [deg], and no outline
+  // is drawn
+  double feature_angle = 35;
+  // colours of the parts in the order of their ids, again from the first after the last; empty: distinct ones
+  std::vector<std::array<unsigned char, 3>> palette;
   std::vector<std::int64_t> only, hide;  // user ids of parts; `only` empty: all
   std::optional<std::string> title;      // default: title of the result
   bool caption = true;                   // title and time of each state

@@ -130,7 +130,8 @@ std::pair<double, double> value_range(const std::vector<Panel>& panels) {
   return {low, high};
 }
 
-void color_surface(Panel& panel, const Snapshots& snapshots, std::pair<double, double> range) {
+void color_surface(Panel& panel, const Snapshots& snapshots, const PictureOptions& o,
+                   std::pair<double, double> range) {
   vtkNew<vtkUnsignedCharArray> colors;
   colors->SetName("color");
   colors->SetNumberOfComponents(3);
@@ -139,9 +140,13 @@ void color_surface(Panel& panel, const Snapshots& snapshots, std::pair<double, d
     vtkDataArray* part = panel.surface->GetCellData()->GetArray("part_id");
     for (vtkIdType c = 0; c < part->GetNumberOfTuples(); ++c) {
       const auto& ids = snapshots.part_id;
-      insert(distinct_color(
-          int(std::lower_bound(ids.begin(), ids.end(), std::int64_t(part->GetTuple1(c))) -
-              ids.begin())));
+      const auto index = std::size_t(
+          std::lower_bound(ids.begin(), ids.end(), std::int64_t(part->GetTuple1(c))) - ids.begin());
+      if (o.palette.empty())
+        insert(distinct_color(int(index)));
+      else
+        insert({o.palette[index % o.palette.size()][0], o.palette[index % o.palette.size()][1],
+                o.palette[index % o.palette.size()][2]});
     }
   }
   for (const double v : panel.value)
@@ -203,10 +208,10 @@ void add_lights(vtkRenderer* renderer) {
   }
 }
 
-void add_actors(vtkRenderer* renderer, const Panel& panel, bool edges) {
+void add_actors(vtkRenderer* renderer, const Panel& panel, bool edges, double feature_angle) {
   vtkNew<vtkPolyDataNormals> normals;
   normals->SetInputData(panel.surface);
-  normals->SetFeatureAngle(35);
+  normals->SetFeatureAngle(feature_angle);
   normals->ConsistencyOff();
   vtkNew<vtkPolyDataMapper> mapper;
   mapper->SetInputConnection(normals->GetOutputPort());
@@ -231,7 +236,7 @@ void add_actors(vtkRenderer* renderer, const Panel& panel, bool edges) {
   // without element edges, the outlines of the bodies
   vtkNew<vtkFeatureEdges> outline;
   outline->SetInputData(panel.surface);
-  outline->SetFeatureAngle(40);
+  outline->SetFeatureAngle(feature_angle + 5);
   outline->ColoringOff();
   outline->NonManifoldEdgesOff();
   vtkNew<vtkPolyDataMapper> lines;
@@ -375,7 +380,7 @@ void draw(const PictureOptions& o) {
   if (!by_part)
     for (Panel& p : panels) take_values(p, o.color);
   const auto range = by_part ? std::pair(0.0, 1.0) : o.range.value_or(value_range(panels));
-  for (Panel& p : panels) color_surface(p, snapshots, range);
+  for (Panel& p : panels) color_surface(p, snapshots, o, range);
 
   // legend only when its entries can be told apart
   const auto entries =
@@ -416,7 +421,7 @@ void draw(const PictureOptions& o) {
                           1 - top / o.height);
     add_lights(renderer);
     add_actors(renderer, panels[i],
-               o.edges.value_or(panels[i].surface->GetNumberOfCells() <= 20000));
+               o.edges.value_or(panels[i].surface->GetNumberOfCells() <= 20000), o.feature_angle);
     set_camera(renderer, axes, e, cell_w / h, o.zoom);
     window->AddRenderer(renderer);
     if (o.caption)
