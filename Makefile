@@ -60,8 +60,8 @@ test: build ## all tests in float, and those of the kernels in double
 bench: build ## speed of the kernels and of whole models
 	@$(FABRICA) bench --threads $(THREADS)
 
-validate: build ## run every case that has a case.toml and compare
-	@python3 tools/validate.py --program $(FABRICA) --out $(OUT)/cases --threads $(THREADS)
+validate: build ## run the cases that are not up to date, compare them, write their pages
+	@$(FABRICA) validate --out $(OUT)/validation --threads $(THREADS)
 
 format: ## lay out the sources by .clang-format
 	@git ls-files 'src/*.h' 'src/*.cpp' 'src/*.cu' 'tests/*.cpp' 'bench/*.cpp' | xargs -r clang-format -i

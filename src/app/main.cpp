@@ -7,6 +7,7 @@
 #include "app/run.h"
 #include "app/show.h"
 #include "app/signals.h"
+#include "app/study.h"
 
 namespace {
 
@@ -42,6 +43,7 @@ int main(int argc, char** argv) {
   fabrica::BenchCommand bench;
   fabrica::ShowCommands show;
   fabrica::BodyCommand body;
+  fabrica::StudyCommands study;
   add_run(app, run);
   add_check(app, check);
   fabrica::add_bench(app, bench);
@@ -49,6 +51,7 @@ int main(int argc, char** argv) {
   fabrica::add_body(app, body);
   fabrica::SignalCommands signals;
   fabrica::add_signals(app, signals);
+  fabrica::add_study(app, study);
   try {
     app.parse(argc, argv);
   } catch (const CLI::RuntimeError& e) {

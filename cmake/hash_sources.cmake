@@ -1,0 +1,17 @@
+# Writes a C++ file OUTPUT that defines study::engine_version: a SHA-256 over the names and contents of the sources in
+# the folders LAYERS (separated by commas) of ROOT. Whatever a run computes with is in there.
+string(REPLACE "," ";" layers "${LAYERS}")
+set(sums "")
+foreach(layer ${layers})
+  file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/${layer}/*.h ${ROOT}/${layer}/*.cpp ${ROOT}/${layer}/*.kw)
+  list(FILTER files EXCLUDE REGEX "_test\\.(cpp|h)$")
+  list(SORT files)
+  foreach(path ${files})
+    file(SHA256 ${ROOT}/${path} sum)
+    string(APPEND sums "${path} ${sum}\n")
+  endforeach()
+endforeach()
+string(SHA256 engine "${sums}")
+set(text "// made by cmake/hash_sources.cmake\n#include \"study/deck_source.h\"\n\nnamespace fabrica::study {\n")
+string(APPEND text "const char* const engine_version = \"${engine}\";\n}  // namespace fabrica::study\n")
+file(WRITE ${OUTPUT} "${text}")

@@ -1,0 +1,29 @@
+#pragma once
+// The pages of cases: one each, the index of all, and the table of ratings as text.
+#include <string>
+#include <vector>
+
+#include "study/case_file.h"
+#include "study/html.h"
+#include "study/outcome.h"
+
+namespace fabrica::study {
+
+// What a page shows beside the outcome.
+struct PageExtras {
+  std::vector<std::pair<std::string, Curve>> energies;  // over time, of glstat
+  std::string picture;                                  // file name beside the page; empty: none
+  std::string picture_remark;                           // why there is none
+  std::vector<std::string> files;                       // that the run read
+};
+
+// OUT/NAME/index.html
+std::string case_page(const Case& c, const Outcome& outcome, const PageExtras& extras);
+
+// OUT/index.html
+std::string index_page(const std::vector<Outcome>& outcomes);
+
+// All ratings as text, the published one beside ours where there is one.
+std::string rating_table(const std::vector<Outcome>& outcomes);
+
+}  // namespace fabrica::study

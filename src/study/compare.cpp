@@ -1,0 +1,161 @@
+#include "study/compare.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "body/tables.h"
+#include "study/error.h"
+#include "study/rate_curve.h"
+
+namespace fabrica::study {
+namespace {
+
+// kinds of data against which a rating means something, as the head of a reference file says it
+bool is_data(const std::string& provenance) {
+  for (const char* kind : {"tabulated", "digitised", "measured", "third-party file",
+                           "standard corridor", "derived", "synthetic"})
+    if (provenance.starts_with(kind)) return true;
+  return false;
+}
+
+void scale(std::vector<double>& values, double factor) {
+  for (double& v : values) v *= factor;
+}
+
+std::size_t index_of_peak(const std::vector<double>& values) {
+  std::size_t at = 0;
+  for (std::size_t i = 1; i < values.size(); ++i)
+    if (std::abs(values[i]) > std::abs(values[at])) at = i;
+  return at;
+}
+
+// rows in which both are numbers: columns of one file may be of different length
+Curve finite(std::vector<double> x, std::vector<double> y) {
+  Curve c;
+  for (std::size_t i = 0; i < x.size() && i < y.size(); ++i)
+    if (std::isfinite(x[i]) && std::isfinite(y[i])) c.x.push_back(x[i]), c.y.push_back(y[i]);
+  return c;
+}
+
+Curve model_curve(const SignalSpec& s, Channels& channels) {
+  std::vector<double> y = channels.column(s.model);
+  std::vector<double> x = s.x.empty() ? channels.abscissa(s.model) : channels.column(s.x);
+  if (x.size() != y.size())
+    throw StudyError("'" + s.model + "' and '" + s.x + "' are not sampled at the same times. " +
+                     "Give both databases one interval");
+  for (const double v : y)
+    if (!std::isfinite(v))
+      throw StudyError("'" + s.model + "' holds a value that is not a number. Look at the run");
+  scale(y, s.scale);
+  scale(x, s.x_scale);
+  return {std::move(x), std::move(y)};
+}
+
+// a column of a reference file over its abscissa
+Curve file_curve(const std::string& column, const std::string& abscissa, Channels& channels) {
+  std::vector<double> x = abscissa.empty()
+                              ? channels.abscissa(column)
+                              : channels.column(table_name_of(column) + ":" + abscissa);
+  return finite(std::move(x), channels.column(column));
+}
+
+void need_unit(const SignalSpec& s, Channels& channels, const Case& c) {
+  const std::string unit = channels.unit(s.reference);
+  if (unit.empty() && !s.unit.empty())
+    throw StudyError(c.file, s.line, "signal.reference",
+                     "'" + s.reference + "' has no unit in its header",
+                     "Name the column \"" + column_of(s.reference) + " [" + s.unit + "]\"");
+  if (unit != s.unit)
+    throw StudyError(c.file, s.line, "signal.unit",
+                     "is '" + s.unit + "', the reference has '" + unit + "'",
+                     "Give the reference's unit and the scale that leads to it");
+}
+
+void read_reference(const SignalSpec& s, Channels& channels, const Case& c, SignalResult& r) {
+  r.reference = file_curve(s.reference, s.reference_x, channels);
+  if (r.reference.x.size() < 2)
+    throw StudyError(c.file, s.line, "signal.reference",
+                     "'" + s.reference + "' has fewer than two points", "Take another column");
+  const auto& head = channels.head(s.reference);
+  const auto text = [&](const char* key) {
+    const auto at = head.find(key);
+    return at == head.end() ? std::string() : at->second;
+  };
+  r.provenance = text("provenance");
+  r.reference_source = text("source");
+  const std::size_t peak = index_of_peak(r.reference.y);
+  r.reference_peak = r.reference.y[peak];
+  r.reference_peak_at = r.reference.x[peak];
+}
+
+void read_corridor(const SignalSpec& s, Channels& channels, const Case& c, SignalResult& r) {
+  if (s.low.empty()) return;
+  r.low = file_curve(s.low, s.reference_x, channels);
+  r.high = file_curve(s.high, s.reference_x, channels);
+  r.corridor_name = "corridor of the tests";
+  if (r.low.x.empty() || r.low.x != r.high.x)
+    throw StudyError(c.file, s.line, "signal.corridor",
+                     "is empty, or its two edges have different abscissas",
+                     "Give two columns of one file");
+}
+
+void rate(const SignalSpec& s, const std::string& time_unit, SignalResult& r) {
+  if (!is_data(r.provenance)) {
+    r.remark =
+        "not rated: the reference file does not say that its numbers are tabulated, digitised or "
+        "measured";
+    return;
+  }
+  Rating shown;
+  for (const std::string& method : s.rating) {
+    const Rating rated = rate_curve(method, r.reference, r.model, {s.unit, time_unit}, s.interval);
+    r.ratings[method] = rated.parts;
+    if (shown.parts.empty() || method == "cora") shown = rated;
+  }
+  r.rated_from = shown.from, r.rated_to = shown.to;
+  if (s.low.empty()) {
+    r.low = shown.inner_low, r.high = shown.inner_high;
+    r.outer_low = shown.outer_low, r.outer_high = shown.outer_high;
+    r.corridor_name = "inner corridor";
+  }
+}
+
+}  // namespace
+
+SignalResult compare_signal(const SignalSpec& s, Channels& channels, const Case& c) {
+  SignalResult r;
+  r.name = s.name, r.unit = s.unit, r.filter = s.filter, r.x_unit = s.x_unit, r.paper = s.paper;
+  if (!s.x.empty()) r.x_name = s.x.find(':') == std::string::npos ? s.x : column_of(s.x);
+  r.model = model_curve(s, channels);
+  if (!s.filter.empty()) r.model.y = filtered(s.filter, r.model, {s.unit, c.time_unit});
+  const std::size_t peak = index_of_peak(r.model.y);
+  r.peak = r.model.y[peak], r.peak_at = r.model.x[peak];
+  if (!s.paper.empty()) r.paper_total = published_rating(s.paper, c.file, s.line);
+  read_corridor(s, channels, c, r);
+  if (s.reference.empty()) {
+    r.remark = "no reference curve available";
+    return r;
+  }
+  read_reference(s, channels, c, r);
+  if (s.rating.empty()) return r;
+  need_unit(s, channels, c);
+  rate(s, c.time_unit, r);
+  return r;
+}
+
+double published_rating(const std::string& row, const std::string& file, int line) {
+  const body::Table table("paper/table1_cora.csv");
+  std::string list;
+  for (int i = 0; i < table.rows(); ++i) {
+    const std::string name = table.text(i, "test") + "/" + table.text(i, "signal");
+    if (name == row) return table.number(i, "total");
+    if (table.text(i, "test") == row.substr(0, row.find('/')) || row.find('/') == std::string::npos)
+      list += (list.empty() ? "" : "; ") + name;
+  }
+  throw StudyError(file, line, "signal.paper",
+                   "'" + row + "' is no row of data/paper/table1_cora.csv",
+                   list.empty() ? "Write test/signal as there" : "Take one of: " + list);
+}
+
+}  // namespace fabrica::study

@@ -1,0 +1,84 @@
+#include "study/measure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "study/error.h"
+
+namespace fabrica::study {
+namespace {
+
+std::string bound_of(const CheckSpec& c) {
+  if (c.expected) {
+    if (*c.expected == 0) return fmt::format("0 within {:.3g}", c.tolerance);
+    return fmt::format("{:.6g} within {:.3g} %", *c.expected, 100 * c.tolerance);
+  }
+  if (c.least && c.most) return fmt::format("{:.6g} to {:.6g}", *c.least, *c.most);
+  return c.least ? fmt::format("at least {:.6g}", *c.least)
+                 : fmt::format("at most {:.6g}", *c.most);
+}
+
+bool holds(const CheckSpec& c, double value) {
+  if (!std::isfinite(value)) return false;
+  if (c.expected) {
+    const double scale = *c.expected == 0 ? 1 : std::abs(*c.expected);
+    return std::abs(value - *c.expected) <= c.tolerance * scale;
+  }
+  return (!c.least || value >= *c.least) && (!c.most || value <= *c.most);
+}
+
+}  // namespace
+
+double mean_over(const std::vector<double>& x, const std::vector<double>& y, double low,
+                 double high) {
+  double work = 0, way = 0;
+  for (std::size_t i = 1; i < x.size(); ++i) {
+    if (std::min(x[i - 1], x[i]) < low || std::max(x[i - 1], x[i]) > high) continue;
+    work += 0.5 * (y[i - 1] + y[i]) * (x[i] - x[i - 1]);
+    way += x[i] - x[i - 1];
+  }
+  if (way == 0)
+    throw StudyError(
+        fmt::format("the run never passes from {} to {}. Correct the range", low, high));
+  return work / way;
+}
+
+double statistic(const CheckSpec& c, Channels& channels) {
+  const std::vector<double> y = channels.column(c.model);
+  for (const double v : y)
+    if (!std::isfinite(v))
+      throw StudyError("'" + c.model + "' holds a value that is not a number. Look at the run");
+  if (c.statistic == "last") return y.back();
+  if (c.statistic == "max") return *std::max_element(y.begin(), y.end());
+  if (c.statistic == "min") return *std::min_element(y.begin(), y.end());
+  if (c.statistic == "peak")
+    return *std::max_element(y.begin(), y.end(),
+                             [](double a, double b) { return std::abs(a) < std::abs(b); });
+  const std::vector<double> x =
+      c.over.empty() ? channels.abscissa(c.model) : channels.column(c.over);
+  if (x.size() != y.size())
+    throw StudyError("'" + c.model + "' and '" + c.over + "' are not sampled at the same times. " +
+                     "Give both databases one interval");
+  const auto [low, high] = std::minmax_element(x.begin(), x.end());
+  return c.range ? mean_over(x, y, c.range->first, c.range->second) : mean_over(x, y, *low, *high);
+}
+
+CheckResult evaluate(const CheckSpec& c, Channels& channels,
+                     const std::function<double(const std::string&)>& named) {
+  CheckResult r;
+  r.name = c.name;
+  r.bound = bound_of(c);
+  try {
+    const bool single = c.model.starts_with("rating:") || c.model.starts_with("fit:");
+    r.value = single ? named(c.model) : statistic(c, channels);
+    r.computed = true;
+    r.passed = holds(c, r.value);
+  } catch (const std::exception& e) {
+    r.problem = e.what();
+  }
+  return r;
+}
+
+}  // namespace fabrica::study

@@ -1,0 +1,34 @@
+#pragma once
+// Checks of a case: a statistic of a result and the bounds it must keep.
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "study/case_file.h"
+#include "study/channels.h"
+
+namespace fabrica::study {
+
+struct CheckResult {
+  std::string name;
+  double value = 0;
+  bool computed = false;  // false: `problem` says why there is no value
+  bool passed = false;
+  std::string bound;  // "26.8 within 25 %", "at most 0.1"
+  std::string problem;
+};
+
+// Integral of y dx over the length of the path of x within [low, high], by the trapezoid rule.
+// Throws StudyError if the path never lies within.
+double mean_over(const std::vector<double>& x, const std::vector<double>& y, double low,
+                 double high);
+
+// The statistic that a check asks for; mean, last, max, min, or peak (the value of largest
+// magnitude, with its sign).
+double statistic(const CheckSpec& check, Channels& channels);
+
+// The outcome of a check. `named` gives numbers that are no columns ("rating:...", "fit:...").
+CheckResult evaluate(const CheckSpec& check, Channels& channels,
+                     const std::function<double(const std::string&)>& named);
+
+}  // namespace fabrica::study

@@ -1,0 +1,111 @@
+#include "study/measure.h"
+
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "study/error.h"
+#include "study/fit.h"
+
+using namespace fabrica::study;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Result {
+  fs::path path = fs::temp_directory_path() / ("fabrica_measure_" + std::to_string(::getpid()));
+  Result() {
+    fs::create_directories(path);
+    std::ofstream(path / "a.csv") << "time,f:1,u\n0,0,0\n1,2,10\n2,-6,20\n3,4,15\n";
+    std::ofstream(path / "ref.csv") << "# provenance: digitised by hand\n# source: somebody\ntime "
+                                       "[ms],g [kN],h_mm\n0,1,2\n1,,3\n";
+  }
+  ~Result() { fs::remove_all(path); }
+};
+
+double value(Channels& channels, const std::string& statistic_name, const std::string& over = "") {
+  CheckSpec c;
+  c.model = "a:f:1", c.statistic = statistic_name, c.over = over;
+  return statistic(c, channels);
+}
+
+}  // namespace
+
+TEST_CASE("statistics of a column are those of its numbers") {
+  const Result r;
+  Channels channels(r.path.string(), r.path.string());
+  CHECK(value(channels, "last") == 4);
+  CHECK(value(channels, "max") == 4);
+  CHECK(value(channels, "min") == -6);
+  CHECK(value(channels, "peak") == -6);
+  // trapezoids 1, -2, -1 over a time of 3
+  CHECK(value(channels, "mean") == doctest::Approx(-2.0 / 3));
+  // work over way: 10*1 + 10*(-2) + (-5)*(-1) = -5 over 10 + 10 - 5 = 15
+  CHECK(value(channels, "mean", "a:u") == doctest::Approx(-5.0 / 15));
+}
+
+TEST_CASE("a quotient, a unit, and the head of a file are found") {
+  const Result r;
+  Channels channels(r.path.string(), r.path.string());
+  CHECK(channels.column("a:f:1 / a:u") == std::vector<double>{0, 0.2, -0.3, 4.0 / 15});
+  CHECK(channels.unit("ref.csv:g") == "kN");
+  CHECK(channels.unit("ref.csv:h_mm") == "mm");
+  CHECK(channels.head("ref.csv:g").at("provenance") == "digitised by hand");
+  CHECK(std::isnan(channels.column("ref.csv:g")[1]));
+}
+
+TEST_CASE("what is not in a result is named, and what there is instead") {
+  const Result r;
+  Channels channels(r.path.string(), r.path.string());
+  CHECK_THROWS_WITH_AS(channels.column("a:z"), doctest::Contains("there are: time, f:1, u"),
+                       StudyError);
+  CHECK_THROWS_WITH_AS(channels.column("b:f"), doctest::Contains("no database b; it has: "),
+                       StudyError);
+  CHECK_THROWS_WITH_AS(channels.column("no.csv:f"), doctest::Contains("no file"), StudyError);
+  CHECK_THROWS_WITH_AS(channels.column("f"), doctest::Contains("database:column"), StudyError);
+}
+
+TEST_CASE("a check passes within its tolerance and fails beyond it") {
+  const Result r;
+  Channels channels(r.path.string(), r.path.string());
+  CheckSpec c;
+  c.name = "f", c.model = "a:f:1", c.statistic = "last", c.expected = 5, c.tolerance = 0.2;
+  CHECK(evaluate(c, channels, nullptr).passed);
+  c.tolerance = 0.19;
+  CHECK_FALSE(evaluate(c, channels, nullptr).passed);
+  c.expected.reset(), c.most = 3.9;
+  CHECK_FALSE(evaluate(c, channels, nullptr).passed);
+  c.most = 4, c.least = 4;
+  CHECK(evaluate(c, channels, nullptr).passed);
+  c.model = "a:q";
+  const CheckResult broken = evaluate(c, channels, nullptr);
+  CHECK_FALSE(broken.passed);
+  CHECK(broken.problem.find("there is no column q") != std::string::npos);
+}
+
+// One predictor with values 0 and 1: the odds of the two groups are the maximum of the likelihood,
+// b0 = ln(odds of group 0), b1 = ln(odds ratio), and Var(b1) is the sum of the reciprocal counts.
+TEST_CASE("a logistic fit of two groups gives their odds in closed form") {
+  std::vector<std::vector<double>> x;
+  std::vector<int> event;
+  const auto add = [&](double group, int count, int happened) {
+    for (int i = 0; i < count; ++i) x.push_back({group}), event.push_back(happened);
+  };
+  add(0, 30, 0), add(0, 10, 1), add(1, 8, 0), add(1, 24, 1);
+  const LogisticFit f = fit_logistic(x, event);
+  CHECK(f.coefficient[0] == doctest::Approx(std::log(10.0 / 30)).epsilon(1e-9));
+  CHECK(f.coefficient[1] == doctest::Approx(std::log(24.0 / 8 / (10.0 / 30))).epsilon(1e-9));
+  CHECK(f.standard_error[1] ==
+        doctest::Approx(std::sqrt(1.0 / 30 + 1.0 / 10 + 1.0 / 8 + 1.0 / 24)).epsilon(1e-6));
+}
+
+TEST_CASE("a logistic fit without a maximum says so") {
+  CHECK_THROWS_WITH_AS(fit_logistic({{0}, {1}, {2}, {3}}, {0, 0, 1, 1}),
+                       doctest::Contains("separate"), StudyError);
+  CHECK_THROWS_WITH_AS(fit_logistic({{0}, {1}}, {1, 1}), doctest::Contains("with and without"),
+                       StudyError);
+}
