@@ -59,7 +59,7 @@ CheckSpec read_check(Fields f, bool limit) {
   c.statistic = f.text("statistic", "last");
   if (single && f.has("statistic"))
     f.fail("statistic", "is given for a single number", "Remove it");
-  one_of(f, "statistic", c.statistic, {"mean", "last", "max", "min", "peak"});
+  one_of(f, "statistic", c.statistic, {"mean", "last", "max", "min", "peak", "magnitude"});
   if (limit) {
     c.least = f.maybe_number("least"), c.most = f.maybe_number("most");
     if (!c.least && !c.most) f.fail("", "a limit without a bound", "Give least, most or both");

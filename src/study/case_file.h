@@ -35,7 +35,7 @@ struct CheckSpec {
                       // "rating:<signal>:<method>[:part]" or "fit:<name>:<coefficient>"
   std::string over;   // the mean is taken over this, not over time
   std::optional<std::pair<double, double>> range;  // of `over`
-  std::string statistic;                           // mean, last, max, min, peak
+  std::string statistic;                           // mean, last, max, min, peak, magnitude
   std::optional<double> expected;
   double tolerance = 0;  // relative to expected, absolute where that is 0
   std::optional<double> least, most;

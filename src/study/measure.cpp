@@ -53,9 +53,11 @@ double statistic(const CheckSpec& c, Channels& channels) {
   if (c.statistic == "last") return y.back();
   if (c.statistic == "max") return *std::max_element(y.begin(), y.end());
   if (c.statistic == "min") return *std::min_element(y.begin(), y.end());
-  if (c.statistic == "peak")
-    return *std::max_element(y.begin(), y.end(),
-                             [](double a, double b) { return std::abs(a) < std::abs(b); });
+  if (c.statistic == "peak" || c.statistic == "magnitude") {
+    const double peak = *std::max_element(
+        y.begin(), y.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+    return c.statistic == "peak" ? peak : std::abs(peak);
+  }
   const std::vector<double> x =
       c.over.empty() ? channels.abscissa(c.model) : channels.column(c.over);
   if (x.size() != y.size())

@@ -42,6 +42,7 @@ TEST_CASE("statistics of a column are those of its numbers") {
   CHECK(value(channels, "max") == 4);
   CHECK(value(channels, "min") == -6);
   CHECK(value(channels, "peak") == -6);
+  CHECK(value(channels, "magnitude") == 6);
   // trapezoids 1, -2, -1 over a time of 3
   CHECK(value(channels, "mean") == doctest::Approx(-2.0 / 3));
   // work over way: 10*1 + 10*(-2) + (-5)*(-1) = -5 over 10 + 10 - 5 = 15

@@ -68,6 +68,9 @@ class Pages(unittest.TestCase):
         self.assertIn("closed form: 10 sin(pi t / 50)", text)
         self.assertIn("no reference curve available", text)
         self.assertIn("passed", text)
+        self.assertIn("CORA 3.6", text)
+        self.assertIn("ISO/TS 18571:2014", text)
+        self.assertRegex(text, r"Published rating .* 0\.920")
 
     def test_curves_and_corridor_are_drawn(self):
         names = self.driver.execute_script("return document.getElementById('signal1').data.map(t => t.name)")
