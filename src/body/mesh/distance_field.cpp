@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace fabrica::body {
 namespace {
@@ -51,6 +52,25 @@ std::vector<float> plane_distance(const Slice& slice, const PlaneGrid& grid) {
     }
   }
   return phi;
+}
+
+// Where the line along z through `foot` meets a triangle: height, and -1 where it leaves the solid
+// upwards, +1 where it enters. Edges are half-open: a line through an edge that two triangles share
+// meets exactly one of them.
+std::optional<std::pair<float, int>> crossing_of(const Point& foot, const Point& a, const Point& b,
+                                                 const Point& c) {
+  const double twice_area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+  const auto inside = [&](const Point& p, const Point& q) {
+    const bool swap = p.y > q.y || (p.y == q.y && p.x > q.x);
+    const Point &u = swap ? q : p, &v = swap ? p : q;
+    const double s = (v.x - u.x) * (foot.y - u.y) - (v.y - u.y) * (foot.x - u.x);
+    return (s > 0) != swap;
+  };
+  const bool ab = inside(a, b), bc = inside(b, c), ca = inside(c, a);
+  if (twice_area == 0 || ab != bc || bc != ca) return std::nullopt;
+  const double wb = ((foot.x - a.x) * (c.y - a.y) - (foot.y - a.y) * (c.x - a.x)) / twice_area;
+  const double wc = ((b.x - a.x) * (foot.y - a.y) - (b.y - a.y) * (foot.x - a.x)) / twice_area;
+  return std::pair{float(a.z + wb * (b.z - a.z) + wc * (c.z - a.z)), twice_area > 0 ? -1 : 1};
 }
 
 }  // namespace
@@ -171,7 +191,6 @@ DistanceField DistanceField::of_triangles(const TriangleSurface& surface, double
     }
     const Point across = cross(b - a, c - a);
     const Point normal = (1 / std::max(norm(across), 1e-12)) * across;
-    const double twice_area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
     for (int j = first[1]; j <= last[1]; ++j)
       for (int i = first[0]; i <= last[0]; ++i) {
         const Point foot{field.origin_.x + i * spacing, field.origin_.y + j * spacing, 0};
@@ -183,22 +202,8 @@ DistanceField DistanceField::of_triangles(const TriangleSurface& surface, double
             continue;  // not even the triangle's plane is nearer
           nearest = std::min(nearest, float(norm(p - closest_on_triangle(p, a, b, c))));
         }
-        // half-open edges: a column through an edge shared by two triangles meets exactly one of
-        // them
-        const auto inside = [&](const Point& p, const Point& q) {
-          const bool swap = p.y > q.y || (p.y == q.y && p.x > q.x);
-          const Point &u = swap ? q : p, &v = swap ? p : q;
-          const double s = (v.x - u.x) * (foot.y - u.y) - (v.y - u.y) * (foot.x - u.x);
-          return (s > 0) != swap;
-        };
-        const bool ab = inside(a, b), bc = inside(b, c), ca = inside(c, a);
-        if (twice_area == 0 || ab != bc || bc != ca) continue;
-        const double wb =
-            ((foot.x - a.x) * (c.y - a.y) - (foot.y - a.y) * (c.x - a.x)) / twice_area;
-        const double wc =
-            ((b.x - a.x) * (foot.y - a.y) - (b.y - a.y) * (foot.x - a.x)) / twice_area;
-        column[std::size_t(j) * nx + i].push_back(
-            {float(a.z + wb * (b.z - a.z) + wc * (c.z - a.z)), twice_area > 0 ? -1 : 1});
+        if (const auto crossing = crossing_of(foot, a, b, c))
+          column[std::size_t(j) * nx + i].push_back(*crossing);
       }
   }
   for (int j = 0; j < ny; ++j)
