@@ -1,13 +1,15 @@
 #pragma once
-// Eight-node brick with 2x2x2 points and mean dilatation (ELFORM 2), and with assumed transverse shear (-1, -2).
+// Eight-node brick with 2x2x2 points and mean dilatation (ELFORM 2), and with assumed transverse
+// shear (-1, -2).
 //
 // Mean dilatation (B-bar): the volume part of the strain rate is the element mean,
-//   D_bar = dev D(q) + 1/3 (b_bar_A . v_A) I,   b_bar = (1/V) sum_q w_q grad N_A(q) = exact mean gradient   (1)
-//   f_A = - sum_q w_q [ dev sigma grad N_A + p grad N_bar_A ]                                             (2)
-// ELFORM -1, -2: the parasitic shear of thin elements is weakened. In local coordinates along the element's axes the
-// off-diagonal gradients of a bending mode are scaled by (shortest/longest edge of the plane)^2, limited to 1, which
-// keeps bending right for boxes and changes nothing for cubes.
-// Source: Hughes, The Finite Element Method (B-bar), sec. 4.5; Borrvall, 7th European LS-DYNA conf. 2009 (idea of -1, -2).
+//   D_bar = dev D(q) + 1/3 (b_bar_A . v_A) I,   b_bar = (1/V) sum_q w_q grad N_A(q) = exact mean
+//   gradient   (1) f_A = - sum_q w_q [ dev sigma grad N_A + p grad N_bar_A ] (2)
+// ELFORM -1, -2: the parasitic shear of thin elements is weakened. In local coordinates along the
+// element's axes the off-diagonal gradients of a bending mode are scaled by (shortest/longest edge
+// of the plane)^2, limited to 1, which keeps bending right for boxes and changes nothing for cubes.
+// Source: Hughes, The Finite Element Method (B-bar), sec. 4.5; Borrvall, 7th European LS-DYNA conf.
+// 2009 (idea of -1, -2).
 #include "element/hex_geometry.h"
 #include "element/solid.h"
 
@@ -31,13 +33,14 @@ struct Hex8Full {
     return 2 + (M::total ? 24 : 0);
   }
 
-  static void lump(const ElementParameters& p, const Corners<double, 8>& c, const Given<double>&, double (&mass)[8],
-                   double (&)[8]) {
+  static void lump(const ElementParameters& p, const Corners<double, 8>& c, const Given<double>&,
+                   double (&mass)[8], double (&)[8]) {
     const double m = double(p.density) * hex_gradient<true>(c.x).volume / 8;
     for (double& corner : mass) corner = m;
   }
 
-  // gradients of the eight shape functions at Gauss point q; returns det J (weight of the point, V = sum)
+  // gradients of the eight shape functions at Gauss point q; returns det J (weight of the point, V
+  // = sum)
   template <class L>
   FABRICA_FN static L gradients(const Vec3<L> (&x)[8], int q, Vec3<L> (&b)[8]) {
     constexpr int sx[8] = {-1, 1, 1, -1, -1, 1, 1, -1}, sy[8] = {-1, -1, 1, 1, -1, -1, 1, 1},
@@ -49,7 +52,8 @@ struct Hex8Full {
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) J.a[i][j] = L(0.0);
     for (int a = 0; a < 8; ++a) {
-      n[a] = {L(0.125 * sx[a] * (1 + s * sy[a]) * (1 + t * sz[a])), L(0.125 * sy[a] * (1 + r * sx[a]) * (1 + t * sz[a])),
+      n[a] = {L(0.125 * sx[a] * (1 + s * sy[a]) * (1 + t * sz[a])),
+              L(0.125 * sy[a] * (1 + r * sx[a]) * (1 + t * sz[a])),
               L(0.125 * sz[a] * (1 + r * sx[a]) * (1 + s * sy[a]))};
       const Vec3<L> d = x[a] - x[0];
       for (int i = 0; i < 3; ++i)
@@ -62,8 +66,8 @@ struct Hex8Full {
   }
 
   template <class L, class M>
-  FABRICA_FN static void initialise(const M&, const ElementParameters&, const Corners<L, 8>& c, const Given<L>&,
-                                    StateView<L> s) {
+  FABRICA_FN static void initialise(const M&, const ElementParameters&, const Corners<L, 8>& c,
+                                    const Given<L>&, StateView<L> s) {
     L volume = L(0.0);
     for (int q = 0; q < 8; ++q) {
       Vec3<L> b[8];
@@ -80,8 +84,9 @@ struct Hex8Full {
   }
 
   template <class L, class M>
-  FABRICA_FN static void forces(const M& material, const ElementParameters& p, Real dt_previous, const Corners<L, 8>& c,
-                                StateView<L> s, CornerForces<L, 8>& out, Totals<L>& totals) {
+  FABRICA_FN static void forces(const M& material, const ElementParameters& p, Real dt_previous,
+                                const Corners<L, 8>& c, StateView<L> s, CornerForces<L, 8>& out,
+                                Totals<L>& totals) {
     const L dt = L(dt_previous);
     const HexGradient<L> mean = hex_gradient<true>(c.x);
     const Mat3<L> mean_gradient = mid_step_gradient(mean.times(c.v), dt);
@@ -119,10 +124,11 @@ struct Hex8Full {
       add_forces(r.stress, weight, b, mean, p, shear, out);
     }
     const L sound = sqrt(modulus / density);
-    const L q = bulk_viscosity(p, density, sound, rate, l);
     const L size = min(mean.volume, L(8.0) * smallest) / hex_largest_face(c.x);
+    const L q = bulk_viscosity(p, density, sound, rate, size, l);
     totals.time_step = stable_step(p, sound, rate, size);
-    totals.internal = (L(1.0) - L(0.5) * dt * rate) * (totals.internal - mean.volume * q * dt * rate);
+    totals.internal =
+        (L(1.0) - L(0.5) * dt * rate) * (totals.internal - mean.volume * q * dt * rate);
     totals.volume = L(8.0) * smallest;
     for (int a = 0; a < 8; ++a) out.f[a] += (mean.volume * q) * mean.b[a];
     if constexpr (M::can_fail) {
@@ -148,7 +154,8 @@ struct Hex8Full {
         for (int j = 0; j < 3; ++j) g.a[i][j] = mean.a[i][j] + scaled.a[i][j];
     }
     FABRICA_FN Mat3<L> apply(const Mat3<L>& d) const {
-      const Mat3<L> R{{{e[0].x, e[0].y, e[0].z}, {e[1].x, e[1].y, e[1].z}, {e[2].x, e[2].y, e[2].z}}};
+      const Mat3<L> R{
+          {{e[0].x, e[0].y, e[0].z}, {e[1].x, e[1].y, e[1].z}, {e[2].x, e[2].y, e[2].z}}};
       Mat3<L> local = R * d * transpose(R);
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j)
@@ -167,7 +174,8 @@ struct Hex8Full {
     s.e[1] = (L(1.0) / norm(second)) * second;
     s.e[2] = cross(s.e[0], s.e[1]);
     const L length[3] = {abs(dot(s.e[0], r[0])), abs(dot(s.e[1], r[1])), abs(dot(s.e[2], r[2]))};
-    // bending in the plane i-j: u_i ~ x_i x_j makes the shear d u_i / d x_j ~ x_i, exact bending has none of it
+    // bending in the plane i-j: u_i ~ x_i x_j makes the shear d u_i / d x_j ~ x_i, exact bending
+    // has none of it
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) {
         const L a = length[j] / length[i];
@@ -191,8 +199,8 @@ struct Hex8Full {
   // equation (2); for ELFORM < 0 the transpose of the weakened gradient acts on the deviator
   template <class L>
   FABRICA_FN static void add_forces(const Sym3<L>& stress, const L& weight, const Vec3<L> (&b)[8],
-                                    const HexGradient<L>& mean, const ElementParameters& p, const ShearScale<L>& shear,
-                                    CornerForces<L, 8>& out) {
+                                    const HexGradient<L>& mean, const ElementParameters& p,
+                                    const ShearScale<L>& shear, CornerForces<L, 8>& out) {
     const L pressure = L(1.0 / 3.0) * trace(stress);
     const Sym3<L> s = plus_sphere(stress, -pressure);
     if (p.formulation >= 0) {
@@ -206,7 +214,8 @@ struct Hex8Full {
   }
 
   template <class L, class M>
-  FABRICA_FN static Mat3<L> deformation(const Vec3<L> (&x)[8], StateView<L> at, const L& ratio, Point<L>& point) {
+  FABRICA_FN static Mat3<L> deformation(const Vec3<L> (&x)[8], StateView<L> at, const L& ratio,
+                                        Point<L>& point) {
     Mat3<L> F = identity3<L>();
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) {

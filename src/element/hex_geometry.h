@@ -17,7 +17,8 @@ struct HexGradient {
       const Vec3<L> d[4] = {v[0] - v[6], v[1] - v[7], v[2] - v[4], v[3] - v[5]};
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j)
-          r.a[i][j] = fma(d[0][i], b[0][j], fma(d[1][i], b[1][j], fma(d[2][i], b[2][j], d[3][i] * b[3][j])));
+          r.a[i][j] = fma(d[0][i], b[0][j],
+                          fma(d[1][i], b[1][j], fma(d[2][i], b[2][j], d[3][i] * b[3][j])));
     } else {
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) {
@@ -28,21 +29,29 @@ struct HexGradient {
     }
     return r;
   }
+  // sum_A |b_A|^2
+  FABRICA_FN L squares() const {
+    L sum = dot(b[0], b[0]);
+    for (int a = 1; a < (antisymmetric ? 4 : 8); ++a) sum += dot(b[a], b[a]);
+    return antisymmetric ? L(2.0) * sum : sum;
+  }
 };
 
 // one component of dV/dx of node `a`, from the two other coordinates of all nodes
 template <class L>
 FABRICA_FN L hex_volume_row(const Vec3<L> (&x)[8], int a, int y, int z) {
   // the neighbours of node a in the order that maps the formula of node 1 onto it
-  constexpr int ring[8][6] = {{1, 2, 3, 4, 5, 7}, {2, 3, 0, 5, 6, 4}, {3, 0, 1, 6, 7, 5}, {0, 1, 2, 7, 4, 6},
-                              {7, 6, 5, 0, 3, 1}, {4, 7, 6, 1, 0, 2}, {5, 4, 7, 2, 1, 3}, {6, 5, 4, 3, 2, 0}};
+  constexpr int ring[8][6] = {{1, 2, 3, 4, 5, 7}, {2, 3, 0, 5, 6, 4}, {3, 0, 1, 6, 7, 5},
+                              {0, 1, 2, 7, 4, 6}, {7, 6, 5, 0, 3, 1}, {4, 7, 6, 1, 0, 2},
+                              {5, 4, 7, 2, 1, 3}, {6, 5, 4, 3, 2, 0}};
   const int* n = ring[a];
   auto Y = [&](int k) { return x[n[k]][y]; };
   auto Z = [&](int k) { return x[n[k]][z]; };
   // k: 0 -> node 2, 1 -> 3, 2 -> 4, 3 -> 5, 4 -> 6, 5 -> 8
-  return L(1.0 / 12.0) * (Y(0) * ((Z(4) - Z(1)) - (Z(2) - Z(3))) + Y(1) * (Z(0) - Z(2)) +
-                          Y(2) * ((Z(1) - Z(5)) - (Z(3) - Z(0))) + Y(3) * ((Z(5) - Z(4)) - (Z(0) - Z(2))) +
-                          Y(4) * (Z(3) - Z(0)) + Y(5) * (Z(2) - Z(3)));
+  return L(1.0 / 12.0) *
+         (Y(0) * ((Z(4) - Z(1)) - (Z(2) - Z(3))) + Y(1) * (Z(0) - Z(2)) +
+          Y(2) * ((Z(1) - Z(5)) - (Z(3) - Z(0))) + Y(3) * ((Z(5) - Z(4)) - (Z(0) - Z(2))) +
+          Y(4) * (Z(3) - Z(0)) + Y(5) * (Z(2) - Z(3)));
 }
 
 template <bool Exact, class L>
@@ -84,7 +93,8 @@ FABRICA_FN L hex_largest_face(const Vec3<L> (&x)[8]) {
     return dot(n, n);
   };
   const L m = max(max(square(0, 1, 2, 3), square(4, 5, 6, 7)),
-                  max(max(square(0, 1, 5, 4), square(1, 2, 6, 5)), max(square(2, 3, 7, 6), square(3, 0, 4, 7))));
+                  max(max(square(0, 1, 5, 4), square(1, 2, 6, 5)),
+                      max(square(2, 3, 7, 6), square(3, 0, 4, 7))));
   return L(0.5) * sqrt(m);
 }
 
@@ -92,11 +102,13 @@ FABRICA_FN L hex_largest_face(const Vec3<L> (&x)[8]) {
 template <class L>
 FABRICA_FN L cube_root_by_newton(const L& v) {
   L r;
-  for (int i = 0; i < LaneTraits<L>::width; ++i) set(r, i, ScalarOf<L>(__builtin_cbrt(double(get(v, i)))));
+  for (int i = 0; i < LaneTraits<L>::width; ++i)
+    set(r, i, ScalarOf<L>(__builtin_cbrt(double(get(v, i)))));
   return r;
 }
 
-// J accumulated as ln J from the strain trace (exact in float) and pulled slowly towards the geometry.
+// J accumulated as ln J from the strain trace (exact in float) and pulled slowly towards the
+// geometry.
 template <class L>
 FABRICA_FN L follow_volume(StateView<L> s, int field, const L& strain, const L& ratio) {
   if constexpr (sizeof(Real) == 8) return ratio;

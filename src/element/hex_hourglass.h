@@ -5,6 +5,9 @@
 namespace fabrica {
 
 // Hourglass quantities of one pack. q[a] is the generalised force of mode a (three components).
+// IHQ 1, the viscous control of the oldest codes, takes Gamma for gamma: x is then zero. It resists
+// the rotation of a skewed brick a little, but asks no more of the step when the brick is
+// distorted.
 template <class L>
 struct HexHourglass {
   Vec3<L> x[4];  // Gamma_a . x
@@ -19,9 +22,14 @@ struct HexHourglass {
     m[2] = (s1 - s2) + (s3 - s4);
     m[3] = (d2 - d1) + (d4 - d3);
   }
-  FABRICA_FN void measure(const Vec3<L> (&position)[8], const Vec3<L> (&velocity)[8], const Mat3<L>& gradient) {
-    modes(position, x);
+  FABRICA_FN void measure(bool orthogonal, const Vec3<L> (&position)[8],
+                          const Vec3<L> (&velocity)[8], const Mat3<L>& gradient) {
     modes(velocity, h);
+    if (!orthogonal) {
+      for (int a = 0; a < 4; ++a) x[a] = {};
+      return;
+    }
+    modes(position, x);
     for (int a = 0; a < 4; ++a) h[a] = h[a] - gradient * x[a];
   }
   FABRICA_FN void scale(const L& s) {
@@ -31,13 +39,11 @@ struct HexHourglass {
 
 // IHQ 4, 5: rate form, turned with the element's spin
 template <class L>
-FABRICA_FN void hexhourglass_stiffness(const ElementParameters& p, const Point<L>& point, const L& dt,
-                                       const HexGradient<L>& g, const Mat3<L>& gradient, StateView<L> s,
+FABRICA_FN void hexhourglass_stiffness(const ElementParameters& p, const Point<L>& point,
+                                       const L& dt, const HexGradient<L>& g,
+                                       const Mat3<L>& gradient, StateView<L> s,
                                        HexHourglass<L>& hg) {
-  L bb = L(0.0);
-  for (int a = 0; a < (g.antisymmetric ? 4 : 8); ++a) bb += dot(g.b[a], g.b[a]);
-  if (g.antisymmetric) bb *= L(2.0);
-  const L k = L(p.hourglass_coefficient / 16) * point.modulus * g.volume * bb * dt;
+  const L k = L(p.hourglass_coefficient / 16) * point.modulus * g.volume * g.squares() * dt;
   const Vec3<L> w = {L(0.5) * dt * (gradient.a[2][1] - gradient.a[1][2]),
                      L(0.5) * dt * (gradient.a[0][2] - gradient.a[2][0]),
                      L(0.5) * dt * (gradient.a[1][0] - gradient.a[0][1])};
@@ -52,8 +58,9 @@ FABRICA_FN void hexhourglass_stiffness(const ElementParameters& p, const Point<L
 
 // IHQ 6: assumed strain stabilisation in a corotational frame (rows e[0..2])
 template <class L>
-FABRICA_FN void hexhourglass_assumed_strain(const ElementParameters& p, const Point<L>& point, const L& dt,
-                                            const Vec3<L> (&x)[8], StateView<L> s, HexHourglass<L>& hg) {
+FABRICA_FN void hexhourglass_assumed_strain(const ElementParameters& p, const Point<L>& point,
+                                            const L& dt, const Vec3<L> (&x)[8], StateView<L> s,
+                                            HexHourglass<L>& hg) {
   const Vec3<L> d1 = x[6] - x[0], d2 = x[7] - x[1], d3 = x[4] - x[2], d4 = x[5] - x[3];
   const Vec3<L> r[3] = {d1 - d2 - d3 + d4, d1 + d2 - d3 - d4, d1 + d2 + d3 + d4};
   Vec3<L> e[3];
@@ -88,11 +95,33 @@ FABRICA_FN void hexhourglass_assumed_strain(const ElementParameters& p, const Po
   }
 }
 
+// IHQ 1-3. Where a brick has hourglassed far, X_a = Gamma_a . x and the gradients at its centre are
+// large, and gamma with them: |gamma_a|^2 <= 8 + |X_a|^2 B,  B = sum_A |grad N_A|^2. A damper k on
+// a velocity that is half a step old is stable up to k |gamma|^2 dt / m = 2 with the corner mass m;
+// a cube at its own step has 1.44 from QM = 0.1. Damping beyond 1.6 is cut to that, which a brick
+// reaches only when it is both distorted and the one that sets the step.
+template <class L>
+FABRICA_FN L hexhourglass_viscous(const ElementParameters& p, const L& dt, const L& density,
+                                  const L& sound, const L& length, const HexGradient<L>& g,
+                                  HexHourglass<L>& hg) {
+  const L k = L(p.hourglass_coefficient * Real(0.25)) * density * sound * length * length;
+  const L most = L(1.6 / 8) * density * g.volume / dt;
+  const L b = g.squares();
+  L work = L(0.0);
+  for (int a = 0; a < 4; ++a) {
+    hg.q[a] = min(k, most / fma(dot(hg.x[a], hg.x[a]), b, L(8.0))) * hg.h[a];
+    work += dot(hg.q[a], hg.h[a]);
+  }
+  return work;
+}
+
 // Fills hg.q for the control type of the part and books the hourglass energy of the step.
 template <class L>
-FABRICA_FN void hexhourglass_forces(const ElementParameters& p, const Point<L>& point, const L& dt, const L& density,
-                                    const L& sound, const L& length, const HexGradient<L>& g, const Corners<L, 8>& c,
-                                    const Mat3<L>& gradient, StateView<L> s, HexHourglass<L>& hg, Totals<L>& totals) {
+FABRICA_FN void hexhourglass_forces(const ElementParameters& p, const Point<L>& point, const L& dt,
+                                    const L& density, const L& sound, const L& length,
+                                    const HexGradient<L>& g, const Corners<L, 8>& c,
+                                    const Mat3<L>& gradient, StateView<L> s, HexHourglass<L>& hg,
+                                    Totals<L>& totals) {
   L work = L(0.0);
   if (p.hourglass >= 4) {
     Vec3<L> old[4];
@@ -105,8 +134,7 @@ FABRICA_FN void hexhourglass_forces(const ElementParameters& p, const Point<L>& 
       for (int a = 0; a < 4; ++a) work += L(0.5) * dot(hg.q[a] + old[a], hg.h[a]);
     }
   } else {
-    const L k = L(p.hourglass_coefficient * Real(0.25)) * density * sound * length * length;
-    for (int a = 0; a < 4; ++a) hg.q[a] = k * hg.h[a], work += dot(hg.q[a], hg.h[a]);
+    work = hexhourglass_viscous(p, dt, density, sound, length, g, hg);
   }
   totals.hourglass = dt * work;
 }
@@ -120,8 +148,9 @@ FABRICA_FN void hexcorner_forces(const HexGradient<L>& g, const L& volume, const
   for (int a = 0; a < 4; ++a)
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) T.a[i][j] = fma(-hg.q[a][i], hg.x[a][j], T.a[i][j]);
-  const Vec3<L>*q = hg.q;
-  const Vec3<L> e1 = q[0] + q[1] + q[2], e2 = q[0] - q[1] - q[2], e3 = q[2] - q[0] - q[1], e4 = q[1] - q[0] - q[2];
+  const Vec3<L>* q = hg.q;
+  const Vec3<L> e1 = q[0] + q[1] + q[2], e2 = q[0] - q[1] - q[2], e3 = q[2] - q[0] - q[1],
+                e4 = q[1] - q[0] - q[2];
   Vec3<L> t[8];
   for (int a = 0; a < (g.antisymmetric ? 4 : 8); ++a) t[a] = T * g.b[a];
   if (g.antisymmetric) t[6] = -t[0], t[7] = -t[1], t[4] = -t[2], t[5] = -t[3];

@@ -1,12 +1,13 @@
 #pragma once
-// Six-node wedge with two points along its axis and mean dilatation (ELFORM 15 and bricks with two merged edges).
+// Six-node wedge with two points along its axis and mean dilatation (ELFORM 15 and bricks with two
+// merged edges).
 //
-// N_A = L_i (1 -+ zeta)/2 with triangle coordinates L_1..L_3; nodes 1-2-3 below, 4-5-6 above; points at
-// zeta = -+ 1/sqrt(3), L = 1/3. As in hex8_full.h the volume rate is the element mean:
-//   f_A = - sum_q w_q [ dev sigma grad N_A + p grad N_bar_A ]                                              (1)
-// The two modes that both points miss, Gamma_1 = (1,-1,0,-1,1,0) and Gamma_2 = (1,1,-2,-1,-1,2) orthogonalised to
-// the linear field, are held by a viscous hourglass force of the kind of hex8.h:
-//   Q = QM rho V^(2/3) c / 4  gamma.v,   gamma = Gamma - (Gamma.x_j) grad N_j                              (2)
+// N_A = L_i (1 -+ zeta)/2 with triangle coordinates L_1..L_3; nodes 1-2-3 below, 4-5-6 above;
+// points at zeta = -+ 1/sqrt(3), L = 1/3. As in hex8_full.h the volume rate is the element mean:
+//   f_A = - sum_q w_q [ dev sigma grad N_A + p grad N_bar_A ] (1)
+// The two modes that both points miss, Gamma_1 = (1,-1,0,-1,1,0) and Gamma_2 = (1,1,-2,-1,-1,2)
+// orthogonalised to the linear field, are held by a viscous hourglass force of the kind of hex8.h:
+//   Q = QM rho V^(2/3) c / 4  gamma.v,   gamma = Gamma - (Gamma.x_j) grad N_j (2)
 // Source: Flanagan and Belytschko 1981 for (2); Hughes, The Finite Element Method, for (1).
 #include "element/hex_geometry.h"
 #include "element/solid.h"
@@ -54,8 +55,8 @@ struct Penta6 {
     return L(0.5) * determinant;
   }
 
-  static void lump(const ElementParameters& p, const Corners<double, 6>& c, const Given<double>&, double (&mass)[6],
-                   double (&)[6]) {
+  static void lump(const ElementParameters& p, const Corners<double, 6>& c, const Given<double>&,
+                   double (&mass)[6], double (&)[6]) {
     double volume = 0;
     for (int q = 0; q < 2; ++q) {
       Vec3<double> b[6];
@@ -65,8 +66,8 @@ struct Penta6 {
   }
 
   template <class L, class M>
-  FABRICA_FN static void initialise(const M&, const ElementParameters&, const Corners<L, 6>& c, const Given<L>&,
-                                    StateView<L> s) {
+  FABRICA_FN static void initialise(const M&, const ElementParameters&, const Corners<L, 6>& c,
+                                    const Given<L>&, StateView<L> s) {
     L volume = L(0.0);
     for (int q = 0; q < 2; ++q) {
       Vec3<L> b[6];
@@ -83,8 +84,9 @@ struct Penta6 {
   }
 
   template <class L, class M>
-  FABRICA_FN static void forces(const M& material, const ElementParameters& p, Real dt_previous, const Corners<L, 6>& c,
-                                StateView<L> s, CornerForces<L, 6>& out, Totals<L>& totals) {
+  FABRICA_FN static void forces(const M& material, const ElementParameters& p, Real dt_previous,
+                                const Corners<L, 6>& c, StateView<L> s, CornerForces<L, 6>& out,
+                                Totals<L>& totals) {
     const L dt = L(dt_previous);
     Vec3<L> b[2][6], mean[6];
     const L w[2] = {gradients(c.x, 0, b[0]), gradients(c.x, 1, b[1])};
@@ -122,8 +124,9 @@ struct Penta6 {
       for (int a = 0; a < 6; ++a) out.f[a] -= w[q] * (deviatoric * b[q][a] + pressure * mean[a]);
     }
     const L sound = sqrt(modulus / density);
-    const L q = bulk_viscosity(p, density, sound, rate, l);
-    totals.time_step = stable_step(p, sound, rate, volume / largest_face(c.x));
+    const L size = volume / largest_face(c.x);
+    const L q = bulk_viscosity(p, density, sound, rate, size, l);
+    totals.time_step = stable_step(p, sound, rate, size);
     totals.internal = (L(1.0) - L(0.5) * dt * rate) * (energy - volume * q * dt * rate);
     totals.volume = L(2.0) * min(w[0], w[1]);
     totals.hourglass = L(0.0);
@@ -149,11 +152,14 @@ struct Penta6 {
   }
 
   template <class L>
-  FABRICA_FN static void hold_missed_modes(const ElementParameters& p, const Corners<L, 6>& c, const Vec3<L> (&mean)[6],
-                                           const Mat3<L>& gradient, const L& impedance, const L& dt,
-                                           CornerForces<L, 6>& out, Totals<L>& totals) {
-    constexpr double modes[2][6] = {{1, -1, 0, -1, 1, 0}, {0.57735026918962576, 0.57735026918962576, -1.1547005383792515,
-                                                           -0.57735026918962576, -0.57735026918962576, 1.1547005383792515}};
+  FABRICA_FN static void hold_missed_modes(const ElementParameters& p, const Corners<L, 6>& c,
+                                           const Vec3<L> (&mean)[6], const Mat3<L>& gradient,
+                                           const L& impedance, const L& dt, CornerForces<L, 6>& out,
+                                           Totals<L>& totals) {
+    constexpr double modes[2][6] = {
+        {1, -1, 0, -1, 1, 0},
+        {0.57735026918962576, 0.57735026918962576, -1.1547005383792515, -0.57735026918962576,
+         -0.57735026918962576, 1.1547005383792515}};
     const L k = L(p.hourglass_coefficient * Real(0.25)) * impedance;
     for (const auto& mode : modes) {
       Vec3<L> x{L(0.0), L(0.0), L(0.0)}, h{L(0.0), L(0.0), L(0.0)};
@@ -175,7 +181,8 @@ struct Penta6 {
       const Vec3<L> n = cross(x[b] - x[a], x[c] - x[a]);
       return dot(n, n);
     };
-    const L m = max(max(quad(0, 1, 4, 3), quad(1, 2, 5, 4)), max(quad(2, 0, 3, 5), max(triangle(0, 1, 2), triangle(3, 4, 5))));
+    const L m = max(max(quad(0, 1, 4, 3), quad(1, 2, 5, 4)),
+                    max(quad(2, 0, 3, 5), max(triangle(0, 1, 2), triangle(3, 4, 5))));
     return L(0.5) * sqrt(m);
   }
 

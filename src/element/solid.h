@@ -1,12 +1,14 @@
 #pragma once
-// What all solid elements share: one material point in the rate or the total form, bulk viscosity, stable step.
+// What all solid elements share: one material point in the rate or the total form, bulk viscosity,
+// stable step.
 //
-// Rate form:   s <- R s R^T + stress increment(D dt),  R the rotation of the step (Jaumann, midpoint)       (1)
-// Mid-step velocity gradient from the end geometry: L_mid = L (1 - dt/2 L)^-1 = L + dt/2 L L + ...           (2)
+// Rate form:   s <- R s R^T + stress increment(D dt),  R the rotation of the step (Jaumann,
+// midpoint)       (1) Mid-step velocity gradient from the end geometry: L_mid = L (1 - dt/2 L)^-1 =
+// L + dt/2 L L + ...           (2)
 //   so that a rigid rotation leaves no strain of second order in the step.
-// Bulk viscosity: q = rho l (Q1^2 l D_kk^2 - Q2 c D_kk) for D_kk < 0, in the force only                      (3)
-// Stable step:    dt = l / (Q + sqrt(Q^2 + c^2)),  Q = Q2 c + Q1 l |D_kk| for D_kk < 0, else 0              (4)
-// Source: von Neumann and Richtmyer 1950; Hallquist, LS-DYNA theory manual (public), time step control.
+// Bulk viscosity: q = rho l (Q1^2 l D_kk^2 - Q2 c D_kk) for D_kk < 0, in the force only (3) Stable
+// step:    dt = l / (Q + sqrt(Q^2 + c^2)),  Q = Q2 c + Q1 l |D_kk| for D_kk < 0, else 0 (4) Source:
+// von Neumann and Richtmyer 1950; Hallquist, LS-DYNA theory manual (public), time step control.
 #include "element/kernel.h"
 
 namespace fabrica {
@@ -26,10 +28,12 @@ FABRICA_FN Mat3<L> mid_step_gradient(const Mat3<L>& l, const L& dt) {
 template <class L>
 FABRICA_FN Vec3<L> spin_increment(const Mat3<L>& l, const L& dt) {
   const L half = L(0.5) * dt;
-  return {half * (l.a[2][1] - l.a[1][2]), half * (l.a[0][2] - l.a[2][0]), half * (l.a[1][0] - l.a[0][1])};
+  return {half * (l.a[2][1] - l.a[1][2]), half * (l.a[0][2] - l.a[2][0]),
+          half * (l.a[1][0] - l.a[0][1])};
 }
 
-// History of one integration point, in this order: Cauchy stress, [ln J for total laws], material state.
+// History of one integration point, in this order: Cauchy stress, [ln J for total laws], material
+// state.
 template <class M>
 struct SolidPoint {
   static constexpr int stress = 0;
@@ -43,7 +47,7 @@ template <class L>
 struct PointResult {
   Sym3<L> mean_stress;  // average of the rotated old and the new stress, for the energy
   Sym3<L> stress;
-  Sym3<L> strain;       // D dt
+  Sym3<L> strain;  // D dt
 };
 
 // Failed points stay failed; a law may only switch `alive` off.
@@ -53,11 +57,13 @@ FABRICA_FN void start_point(StateView<L> s) {
 }
 
 // Advances one point from t(n-1) to t(n).
-//   gradient: velocity gradient at mid step; F: deformation gradient (total laws; ignored otherwise)
-//   pull: how fast ln J follows det F; 1 replaces it (double), small values keep float noise out of stiff volumes
+//   gradient: velocity gradient at mid step; F: deformation gradient (total laws; ignored
+//   otherwise) pull: how fast ln J follows det F; 1 replaces it (double), small values keep float
+//   noise out of stiff volumes
 template <class L, class M>
-FABRICA_FN PointResult<L> advance_point(const M& material, const Mat3<L>& gradient, const Mat3<L>& F, const L& dt,
-                                        Point<L>& point, StateView<L> s) {
+FABRICA_FN PointResult<L> advance_point(const M& material, const Mat3<L>& gradient,
+                                        const Mat3<L>& F, const L& dt, Point<L>& point,
+                                        StateView<L> s) {
   using P = SolidPoint<M>;
   using MaterialState = typename M::template State<L>;
   PointResult<L> r;
@@ -89,27 +95,35 @@ FABRICA_FN PointResult<L> advance_point(const M& material, const Mat3<L>& gradie
 
 // The point with the elastic moduli filled in.
 template <class L>
-FABRICA_FN Point<L> elastic_point(const ElementParameters& p, const L& dt, const L& volume_ratio, const L& length) {
+FABRICA_FN Point<L> elastic_point(const ElementParameters& p, const L& dt, const L& volume_ratio,
+                                  const L& length) {
   return {dt, volume_ratio, length, L(p.bulk + Real(4.0 / 3.0) * p.shear), L(p.shear), L(1.0)};
 }
 
 // Bulk viscosity pressure, equation (3), and the stable step, equation (4).
 //   rate: D_kk; size: length of the step estimate; length: cube root of the volume
+// In a flat element the damper over its thin side has the damping ratio 1/2 Q2 length/size, of
+// which (4) knows nothing: beyond length/size = 2.5 (a flat box 4 times as wide as high) the length
+// is cut, so that the step of (4) stays stable.
 template <class L>
-FABRICA_FN L bulk_viscosity(const ElementParameters& p, const L& density, const L& c, const L& rate, const L& length) {
+FABRICA_FN L bulk_viscosity(const ElementParameters& p, const L& density, const L& c, const L& rate,
+                            const L& size, const L& cube_root) {
+  const L length = min(cube_root, L(2.5) * size);
   const L q1 = L(p.quadratic_viscosity), q2 = L(p.linear_viscosity);
   const L q = density * length * rate * (q1 * q1 * length * rate - q2 * c);
   return select(rate < L(0.0), q, L(0.0));
 }
 template <class L>
 FABRICA_FN L stable_step(const ElementParameters& p, const L& c, const L& rate, const L& size) {
-  const L Q = select(rate < L(0.0), L(p.linear_viscosity) * c - L(p.quadratic_viscosity) * size * rate, L(0.0));
+  const L Q = select(rate < L(0.0),
+                     L(p.linear_viscosity) * c - L(p.quadratic_viscosity) * size * rate, L(0.0));
   return size / (Q + sqrt(fma(Q, Q, c * c)));
 }
 
 // Deviatoric (and, unless nearly incompressible, volumetric) part stiffness damping: beta C : D.
 template <class L>
-FABRICA_FN Sym3<L> damping_stress(const ElementParameters& p, const Mat3<L>& gradient, const L& step) {
+FABRICA_FN Sym3<L> damping_stress(const ElementParameters& p, const Mat3<L>& gradient,
+                                  const L& step) {
   const L beta = p.stiffness_damping > 0 ? L(p.stiffness_damping) * step : L(-p.stiffness_damping);
   const Sym3<L> d = sym(gradient);
   const L volumetric = p.bulk > 50 * p.shear ? L(0.0) : beta * L(p.bulk) * trace(d);

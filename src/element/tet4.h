@@ -1,10 +1,11 @@
 #pragma once
 // Four-node tetrahedron with one point (ELFORM 10) and its nodal-pressure form (ELFORM 13).
-//   K1 = e2 x e3, ..., det = e1 . K1, grad N_k = K_k / det, V = det / 6, f_k = -sigma K_k / 6               (1)
-// Nodal pressure (Bonet and Burton): the volume rate is averaged to the nodes of the part with the element
-// volumes as weights, the pressure follows there from the bulk modulus, and the element uses the mean of its four
-// nodal pressures; forces are the exact derivative, so energy is conserved:
-//   dp_A = K sum_e V_e tr(D_e) dt / sum_e V_e,    p_e = 1/4 sum_A p_A   (tension positive)                  (2)
+//   K1 = e2 x e3, ..., det = e1 . K1, grad N_k = K_k / det, V = det / 6, f_k = -sigma K_k / 6 (1)
+// Nodal pressure (Bonet and Burton): the volume rate is averaged to the nodes of the part with the
+// element volumes as weights, the pressure follows there from the bulk modulus, and the element
+// uses the mean of its four nodal pressures; forces are the exact derivative, so energy is
+// conserved:
+//   dp_A = K sum_e V_e tr(D_e) dt / sum_e V_e,    p_e = 1/4 sum_A p_A   (tension positive) (2)
 // Source: Bonet and Burton, Commun. Numer. Meth. Engng 14 (1998) 437.
 #include "element/hex_geometry.h"
 #include "element/solid.h"
@@ -28,7 +29,8 @@ struct TetGradient {
     const Vec3<L> a = v[1] - v[0], b = v[2] - v[0], c = v[3] - v[0];
     Mat3<L> r;
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) r.a[i][j] = inverse * fma(a[i], k[1][j], fma(b[i], k[2][j], c[i] * k[3][j]));
+      for (int j = 0; j < 3; ++j)
+        r.a[i][j] = inverse * fma(a[i], k[1][j], fma(b[i], k[2][j], c[i] * k[3][j]));
     return r;
   }
   // smallest altitude: det / largest 2 x face area
@@ -56,8 +58,8 @@ struct Tet4 {
   }
 
   template <class L, class M>
-  FABRICA_FN static void initialise(const M&, const ElementParameters&, const Corners<L, 4>& c, const Given<L>&,
-                                    StateView<L> s) {
+  FABRICA_FN static void initialise(const M&, const ElementParameters&, const Corners<L, 4>& c,
+                                    const Given<L>&, StateView<L> s) {
     const TetGradient<L> g(c.x);
     s.store(initial_volume, g.volume());
     s.store(length, cube_root_by_newton(g.volume()));
@@ -68,23 +70,25 @@ struct Tet4 {
     start_point<L, M>({s.block + point_field<M> * block_size});
   }
 
-  static void lump(const ElementParameters& p, const Corners<double, 4>& c, const Given<double>&, double (&mass)[4],
-                   double (&)[4]) {
+  static void lump(const ElementParameters& p, const Corners<double, 4>& c, const Given<double>&,
+                   double (&mass)[4], double (&)[4]) {
     const double m = double(p.density) * TetGradient<double>(c.x).volume() / 4;
     for (double& corner : mass) corner = m;
   }
 
   template <class L, class M>
-  FABRICA_FN static void forces(const M& material, const ElementParameters& p, Real dt_previous, const Corners<L, 4>& c,
-                                StateView<L> s, CornerForces<L, 4>& out, Totals<L>& totals) {
+  FABRICA_FN static void forces(const M& material, const ElementParameters& p, Real dt_previous,
+                                const Corners<L, 4>& c, StateView<L> s, CornerForces<L, 4>& out,
+                                Totals<L>& totals) {
     compute<L, M, false>(material, p, dt_previous, c, L(0.0), L(0.0), s, out, totals);
   }
 
-  // NodalPressure: mean_rate is the element's averaged tr(D), pressure the mean nodal pressure (tension positive)
+  // NodalPressure: mean_rate is the element's averaged tr(D), pressure the mean nodal pressure
+  // (tension positive)
   template <class L, class M, bool NodalPressure>
   FABRICA_FN static void compute(const M& material, const ElementParameters& p, Real dt_previous,
-                                 const Corners<L, 4>& c, const L& mean_rate, const L& pressure, StateView<L> s,
-                                 CornerForces<L, 4>& out, Totals<L>& totals) {
+                                 const Corners<L, 4>& c, const L& mean_rate, const L& pressure,
+                                 StateView<L> s, CornerForces<L, 4>& out, Totals<L>& totals) {
     const L dt = L(dt_previous);
     const TetGradient<L> g(c.x);
     const L volume = g.volume();
@@ -111,11 +115,13 @@ struct Tet4 {
 
     const L density = L(p.density) / ratio;
     const L sound = sqrt(point.modulus / density);
-    const L q = bulk_viscosity(p, density, sound, rate, l);
-    totals.time_step = stable_step(p, sound, rate, g.altitude());
+    const L size = g.altitude();
+    const L q = bulk_viscosity(p, density, sound, rate, size, l);
+    totals.time_step = stable_step(p, sound, rate, size);
     const L mid_volume = volume * (L(1.0) - L(0.5) * dt * rate);
     Sym3<L> strain = r.strain;
-    if constexpr (NodalPressure) strain = plus_sphere(strain, L(1.0 / 3.0) * dt * (rate - mean_rate));
+    if constexpr (NodalPressure)
+      strain = plus_sphere(strain, L(1.0 / 3.0) * dt * (rate - mean_rate));
     totals.internal = mid_volume * (ddot(r.mean_stress, strain) - q * dt * rate);
     totals.volume = volume;
     Sym3<L> stress = plus_sphere(r.stress, -q);
@@ -143,14 +149,15 @@ struct Tet4 {
     at.put(0, r.stress);
   }
   template <class L, class M>
-  FABRICA_FN static Mat3<L> deformation(const Corners<L, 4>& c, StateView<L> s, StateView<L> at, const L& strain,
-                                        const L& ratio, Point<L>& point) {
+  FABRICA_FN static Mat3<L> deformation(const Corners<L, 4>& c, StateView<L> s, StateView<L> at,
+                                        const L& strain, const L& ratio, Point<L>& point) {
     Mat3<L> F;
     const Vec3<L> e[3] = {c.x[1] - c.x[0], c.x[2] - c.x[0], c.x[3] - c.x[0]};
     Vec3<L> k[3];
     for (int a = 0; a < 3; ++a) k[a] = s.template get<Vec3<L>>(reference<M> + 3 * a);
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) F.a[i][j] = fma(e[0][i], k[0][j], fma(e[1][i], k[1][j], e[2][i] * k[2][j]));
+      for (int j = 0; j < 3; ++j)
+        F.a[i][j] = fma(e[0][i], k[0][j], fma(e[1][i], k[1][j], e[2][i] * k[2][j]));
     point.volume_ratio = follow_volume<L>(at, SolidPoint<M>::log_volume, strain, ratio);
     return scale_volume(F, point.volume_ratio);
   }
