@@ -27,8 +27,8 @@ struct View {
   double width, height;  // pixels
   std::function<bool(const PlacedBone&)> take;
   bool pieces = true;
-  double cut_y = 1e9;  // [mm] bricks to the left of it are left out
-  bool edges = false;
+  std::function<bool(const Point&)> keep = {};  // bricks and lines by their centre; empty: all
+  bool layers = false;                          // colours by layer, with element edges
 };
 
 bool starts(const std::string& text, std::initializer_list<const char*> prefixes) {
@@ -38,7 +38,7 @@ bool starts(const std::string& text, std::initializer_list<const char*> prefixes
 
 bool right(const PlacedBone& b) { return b.side != body::Side::left; }
 
-std::vector<View> views() {
+std::vector<View> views(const Body& body) {
   const auto all = [](const PlacedBone&) { return true; };
   const auto named = [](std::initializer_list<const char*> prefixes, bool right_only) {
     const std::vector<std::string> list(prefixes.begin(), prefixes.end());
@@ -57,18 +57,23 @@ std::vector<View> views() {
                          [&](const std::string& p) { return b.mesh.name.starts_with(p); });
     };
   };
+  const Point knee = body.skeleton.joint_centre("knee", body::Side::right);
+  const Point shoulder = body.skeleton.joint_centre("shoulder", body::Side::right);
+  const auto right_half = [](const Point& x) { return x.y < 0; };
   const auto trunk = [](const PlacedBone& b) { return b.region == body::Region::thorax; };
   return {
-      {"front", "front", 560, 1000, all},
-      {"side", "right", 560, 1000, all},
-      {"back", "back", 560, 1000, all},
-      {"oblique", "1,-0.8,0.35", 700, 1000, all},
-      {"thorax", "1,-0.5,0.2", 800, 800, trunk},
-      {"thorax_back", "-1,-0.6,0.3", 800, 800, trunk},
-      {"pelvis", "1,-0.5,0.5", 800, 700,
+      {"front", "front", 480, 1000, all},
+      {"side", "right", 420, 1000, all},
+      {"back", "back", 480, 1000, all},
+      {"oblique", "1,-0.8,0.3", 560, 900, all},
+      {"thorax", "1,-0.5,0.2", 620, 620, trunk},
+      {"thorax_back", "-1,-0.6,0.3", 620, 620, trunk},
+      {"pelvis", "1,-0.5,0.5", 620, 560,
        [](const PlacedBone& b) { return b.region == body::Region::pelvis || b.mesh.name == "L5"; }},
-      {"knee", "1,-0.7,0.3", 600, 800, limb("leg", {"femur", "tibia", "fibula", "patella"})},
-      {"shoulder", "1,-0.7,0.3", 800, 700, limb("arm", {"clavicle", "scapula", "humerus"})},
+      {"knee", "1,-0.7,0.3", 600, 700, limb("leg", {"femur", "tibia", "fibula", "patella"}), true,
+       [knee](const Point& x) { return norm(x - knee) < 130; }},
+      {"shoulder", "1,-0.7,0.3", 700, 600, limb("arm", {"clavicle", "scapula", "humerus"}), true,
+       [shoulder](const Point& x) { return norm(x - shoulder) < 190; }},
       {"hand", "1,-0.3,0.2", 700, 800,
        [](const PlacedBone& b) {
          return right(b) && b.region == body::Region::arm &&
@@ -79,10 +84,10 @@ std::vector<View> views() {
          return right(b) && b.region == body::Region::leg &&
                 !starts(b.mesh.name, {"femur", "tibia", "fibula", "patella"});
        }},
-      {"skull", "1,-0.8,0.25", 800, 800, named({"skull", "mandible"}, false)},
-      {"skull_cut", "left", 800, 800, named({"skull", "mandible"}, false), true, 0, true},
-      {"vertebra_pair", "1,-0.8,0.5", 800, 800, named({"L3", "L4"}, false)},
-      {"vertebra_pair_cut", "left", 800, 700, named({"L3", "L4"}, false), true, 0, true},
+      {"skull", "1,-0.8,0.25", 620, 620, named({"skull", "mandible"}, false)},
+      {"skull_cut", "left", 560, 560, named({"skull", "mandible"}, false), true, right_half, true},
+      {"vertebra_pair", "1,-0.8,0.5", 620, 620, named({"L3", "L4"}, false)},
+      {"vertebra_pair_cut", "left", 620, 560, named({"L3", "L4"}, false), true, right_half, true},
   };
 }
 
@@ -105,6 +110,7 @@ class Scene {
   }
 
  private:
+  bool keep(const Point& x) const { return !view_->keep || view_->keep(x); }
   int node(const Point& x) {
     mesh_.node_id.push_back(std::int64_t(mesh_.node_id.size()) + 1);
     for (int k = 0; k < 3; ++k) mesh_.position.push_back(float(x[k]));
@@ -119,9 +125,9 @@ class Scene {
                int tissue) {
     std::vector<body::Brick> kept;
     for (const body::Brick& b : bricks) {
-      double y = 0;
-      for (const int n : b) y += nodes[std::size_t(n)].y / 8;
-      if (y < view_->cut_y) kept.push_back(b);
+      Point centre{0, 0, 0};
+      for (const int n : b) centre += 0.125 * nodes[std::size_t(n)];
+      if (keep(centre)) kept.push_back(b);
     }
     std::vector<int> at(nodes.size(), -1);
     for (const body::Quad& q : body::boundary_quads(kept)) {
@@ -135,8 +141,7 @@ class Scene {
     }
   }
   void add_bone(const PlacedBone& b) {
-    const bool cut = view_->cut_y < 1e8;
-    if (!cut)
+    if (!view_->layers)
       return surface(b.nodes, b.mesh.bricks,
                      b.mesh.name.starts_with("costal_cartilage") ? cartilage : bone);
     for (int layer = 0; layer < 4; ++layer) {
@@ -161,6 +166,7 @@ class Scene {
       if (!shown || !connected_to_shown(piece)) continue;
       if (!piece.bricks.empty()) surface(nodes, piece.bricks, cartilage);
       for (const auto& q : piece.quads) {
+        if (!keep(0.5 * (nodes[std::size_t(q[0])] + nodes[std::size_t(q[2])]))) continue;
         std::array<int, 4> corners{};
         for (std::size_t k = 0; k < 4; ++k) corners[k] = node(nodes[std::size_t(q[k])]);
         quad(corners, ligament);
@@ -175,7 +181,7 @@ class Scene {
   }
   // a ligament's line as a bar of 1.2 mm
   void line(const Point& a, const Point& b) {
-    if ((a.y + b.y) / 2 > view_->cut_y) return;
+    if (!keep(0.5 * (a + b))) return;
     const Point d = b - a;
     Point side = cross(d, std::abs(d.z) > std::abs(d.x) ? Point{1, 0, 0} : Point{0, 0, 1});
     if (norm(side) < 1e-9) return;
@@ -195,12 +201,21 @@ class Scene {
   ResultMesh mesh_;
 };
 
+// colours of the tissues that occur, in their order
+std::vector<std::array<unsigned char, 3>> colors_of(const ResultMesh& mesh) {
+  std::vector<std::array<unsigned char, 3>> colors;
+  for (int t = bone; t <= ligament; ++t)
+    if (std::find(mesh.shell_part.begin(), mesh.shell_part.end(), t - 1) != mesh.shell_part.end())
+      colors.push_back(palette[std::size_t(t - 1)]);
+  return colors;
+}
+
 }  // namespace
 
 std::vector<std::string> draw_body(const Body& body, const std::string& folder) {
   std::filesystem::create_directories(folder);
   std::vector<std::string> drawn;
-  for (const View& view : views()) {
+  for (const View& view : views(body)) {
     const ResultMesh mesh = Scene(body).take(view);
     if (mesh.shells() == 0) continue;
     const std::string state = folder + "/" + view.name + ".pvd";
@@ -212,8 +227,8 @@ std::vector<std::string> draw_body(const Body& body, const std::string& folder) 
     picture.input = state, picture.output = folder + "/" + view.name + ".png";
     picture.view = view.direction;
     picture.width = int(view.width), picture.height = int(view.height);
-    picture.edges = view.edges, picture.caption = false;
-    picture.feature_angle = 70, picture.palette = palette;
+    picture.edges = view.layers, picture.caption = false;
+    picture.feature_angle = 175, picture.palette = colors_of(mesh);
     render_picture(picture);
     std::filesystem::remove(state);
     std::filesystem::remove(folder + "/" + view.name + "_0000.vtu");
