@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "app/body_draws.h"
 #include "app/body_pictures.h"
 #include "body/assembly.h"
 #include "body/body.h"
@@ -70,6 +71,7 @@ int body_command(const BodyCommand& c) {
     for (const std::string& name : body::bone_names()) fmt::print("{}\n", name);
     return 0;
   }
+  if (c.random > 0) return draw_bodies(c.random, c.resolution, !c.no_joints);
   const std::clock_t start = std::clock();
   const body::Body made = body::build_body(options_of(c));
   Diagnostics diagnostics;
@@ -122,6 +124,8 @@ void add_body(CLI::App& app, BodyCommand& c) {
       ->capture_default_str();
   cmd->add_flag("--pictures", c.pictures, "also draw it, whole and region by region");
   cmd->add_flag("--no-joints", c.no_joints, "bones alone, without what joins them");
+  cmd->add_option("--random", c.random,
+                  "make so many bodies of random posture and size, report each, write nothing");
   cmd->add_flag("--list", c.list, "list the bones");
   cmd->add_flag("--quiet", c.quiet, "no progress");
   cmd->callback([&c] { throw CLI::RuntimeError(body_command(c)); });

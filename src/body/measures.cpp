@@ -14,15 +14,7 @@
 #include "body/tables.h"
 
 namespace fabrica::body {
-namespace {
 
-struct Quality {
-  double min_jacobian = 1, p1_jacobian = 1, min_size = 1e9;
-  std::string where_jacobian, where_size;
-  int bricks = 0;
-};
-
-// all bricks of bones and pieces where they stand now
 Quality brick_quality(const Body& body) {
   std::vector<double> all;
   Quality q;
@@ -48,6 +40,8 @@ Quality brick_quality(const Body& body) {
   if (!all.empty()) q.p1_jacobian = all[all.size() / 100];
   return q;
 }
+
+namespace {
 
 // [mm] root-mean-square distance of bone landmarks to a column of the table
 double landmark_rms(const Skeleton& skeleton, const std::string& column) {

@@ -24,6 +24,14 @@ struct Measure {
   bool required = true;  // false: reported only
 };
 
+struct Quality {
+  double min_jacobian = 1, p1_jacobian = 1, min_size = 1e9;  // scaled Jacobian [-]; size [mm]
+  std::string where_jacobian, where_size;                    // bone or piece
+  int bricks = 0;
+};
+// of all bricks of bones and pieces where they stand
+Quality brick_quality(const Body& body);
+
 // Measures the body as assembled: nodes where joints have moved them.
 std::vector<Measure> measure_body(const Body& body, const AssembledBody& assembled,
                                   const Model& model, const CheckReport& check,

@@ -1,0 +1,71 @@
+#include "app/body_draws.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <random>
+
+#include "body/body.h"
+#include "body/measures.h"
+
+namespace fabrica {
+namespace {
+
+// uniform in the middle `share` of a range, the same on every machine
+double draw(std::mt19937_64& random, double low, double high, double share) {
+  const double unit = double(random() >> 11) * 0x1p-53;
+  return 0.5 * (low + high) + share * (unit - 0.5) * (high - low);
+}
+
+body::BodyOptions draw_options(std::mt19937_64& random, body::Resolution resolution, bool joints) {
+  body::BodyOptions options;
+  options.resolution = resolution;
+  options.joints = joints;
+  const double stature = draw(random, 1550, 1900, 1), mass = draw(random, 50, 110, 1);
+  options.subject = body::make_subject("male", stature, mass);
+  for (const body::Joint& joint : body::joint_tree()) {
+    if (joint.name == "pelvis" || joint.name == "patella")
+      continue;  // the root is free, the patella follows the knee
+    for (const body::JointAxis& axis : joint.axes)
+      for (const char* side : {".right.", ".left."}) {
+        if (!joint.paired && side[1] == 'l') continue;
+        const std::string name = joint.name + (joint.paired ? side : ".") + axis.coordinate;
+        body::set_angle(options.posture, name, draw(random, axis.low, axis.high, 0.8));
+      }
+  }
+  options.posture.name = "random";
+  return options;
+}
+
+}  // namespace
+
+int draw_bodies(int count, const std::string& resolution, bool joints) {
+  std::mt19937_64 random(1543);
+  int failures = 0, good = 0;
+  double worst = 1;
+  for (int i = 1; i <= count; ++i) {
+    const body::BodyOptions options =
+        draw_options(random, body::resolution_named(resolution), joints);
+    const std::string who =
+        fmt::format("{:3}: {:.0f} mm {:.0f} kg", i, options.subject.stature, options.subject.mass);
+    try {
+      const body::Body made = body::build_body(options);
+      const body::Quality q = body::brick_quality(made);
+      worst = std::min(worst, q.min_jacobian);
+      good += q.min_jacobian >= 0.30;
+      failures += q.min_jacobian <= 0;
+      fmt::print("{}: {} bricks, scaled Jacobian {:.2f} ({}), 99 % above {:.2f}{}\n", who, q.bricks,
+                 q.min_jacobian, q.where_jacobian, q.p1_jacobian,
+                 q.min_jacobian <= 0 ? " FAILED" : "");
+    } catch (const body::BodyError& e) {
+      ++failures;
+      fmt::print("{}: FAILED: {}\n", who, e.what());
+    }
+  }
+  fmt::print(
+      "{} of {} bodies made with positive Jacobians, {} of them at least 0.30; smallest {:.2f}\n",
+      count - failures, count, good, worst);
+  return failures ? 1 : 0;
+}
+
+}  // namespace fabrica
