@@ -1,0 +1,158 @@
+#include "body/joints/bone_surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fabrica::body {
+
+namespace {
+
+Point unit(const Point& a) {
+  const double length = norm(a);
+  return length > 0 ? (1 / length) * a : Point{0, 0, 1};
+}
+
+}  // namespace
+
+Point quad_normal(const Point& a, const Point& b, const Point& c, const Point& d) {
+  return unit(cross(c - a, d - b));
+}
+
+// Voronoi regions of vertices, edges and face (Ericson, Real-Time Collision Detection, 2005, 5.1.5)
+Point nearest_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c) {
+  const Point ab = b - a, ac = c - a, ap = p - a;
+  const double d1 = dot(ab, ap), d2 = dot(ac, ap);
+  if (d1 <= 0 && d2 <= 0) return a;
+  const Point bp = p - b;
+  const double d3 = dot(ab, bp), d4 = dot(ac, bp);
+  if (d3 >= 0 && d4 <= d3) return b;
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + (d1 / (d1 - d3)) * ab;
+  const Point cp = p - c;
+  const double d5 = dot(ab, cp), d6 = dot(ac, cp);
+  if (d6 >= 0 && d5 <= d6) return c;
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + (d2 / (d2 - d6)) * ac;
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
+    return b + ((d4 - d3) / ((d4 - d3) + (d5 - d6))) * (c - b);
+  const double sum = 1 / (va + vb + vc);
+  return a + (vb * sum) * ab + (vc * sum) * ac;
+}
+
+BoneSurface::BoneSurface(const BoneMesh& mesh) : mesh_(mesh) {
+  node_normals_.assign(mesh.nodes.size(), Point{0, 0, 0});
+  const auto at = [&](int node) { return mesh.nodes[std::size_t(node)]; };
+  low = {1e30, 1e30, 1e30}, high = {-1e30, -1e30, -1e30};
+  double edge = 0;
+  for (std::size_t q = 0; q < mesh.surface.size(); ++q) {
+    const auto& s = mesh.surface[q];
+    const Point x[4] = {at(s[0]), at(s[1]), at(s[2]), at(s[3])};
+    const Point normal = cross(x[2] - x[0], x[3] - x[1]);
+    for (int corner = 0; corner < 4; ++corner) {
+      node_normals_[std::size_t(s[std::size_t(corner)])] += normal;
+      nodes_.push_back(s[std::size_t(corner)]);
+      for (int i = 0; i < 3; ++i) {
+        low[i] = std::min(low[i], x[corner][i]);
+        high[i] = std::max(high[i], x[corner][i]);
+      }
+    }
+    edge += norm(x[1] - x[0]);
+    triangles_.push_back({int(q), x[0], x[1], x[2], unit(cross(x[1] - x[0], x[2] - x[0]))});
+    triangles_.push_back({int(q), x[0], x[2], x[3], unit(cross(x[2] - x[0], x[3] - x[0]))});
+  }
+  std::sort(nodes_.begin(), nodes_.end());
+  nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
+  for (Point& normal : node_normals_) normal = unit(normal);
+
+  // cells of about two edges
+  spacing_ = std::max(2 * edge / double(std::max<std::size_t>(mesh.surface.size(), 1)), 1e-3);
+  for (int i = 0; i < 3; ++i) count_[i] = std::max(1, int((high[i] - low[i]) / spacing_) + 1);
+  cells_.resize(std::size_t(count_[0]) * std::size_t(count_[1]) * std::size_t(count_[2]));
+  for (std::size_t k = 0; k < triangles_.size(); ++k) {
+    const Triangle& t = triangles_[k];
+    Point from, to;
+    for (int i = 0; i < 3; ++i) {
+      from[i] = std::min({t.a[i], t.b[i], t.c[i]});
+      to[i] = std::max({t.a[i], t.b[i], t.c[i]});
+    }
+    visit(from, to, [&](std::size_t c) { cells_[c].push_back(int(k)); });
+  }
+}
+
+int BoneSurface::cell(const Point& p, int axis) const {
+  return std::clamp(int(std::floor((p[axis] - low[axis]) / spacing_)), 0, count_[axis] - 1);
+}
+
+template <class F>
+void BoneSurface::visit(const Point& from, const Point& to, F&& act) const {
+  for (int k = cell(from, 2); k <= cell(to, 2); ++k)
+    for (int j = cell(from, 1); j <= cell(to, 1); ++j)
+      for (int i = cell(from, 0); i <= cell(to, 0); ++i)
+        act((std::size_t(k) * std::size_t(count_[1]) + std::size_t(j)) * std::size_t(count_[0]) +
+            std::size_t(i));
+}
+
+SurfacePoint BoneSurface::nearest(const Point& p, double reach) const {
+  SurfacePoint best;
+  for (int i = 0; i < 3; ++i)
+    if (p[i] < low[i] - reach || p[i] > high[i] + reach) return best;
+  double least = reach, facing = 0;
+  const Point r{reach, reach, reach};
+  visit(p - r, p + r, [&](std::size_t c) {
+    for (int k : cells_[c]) {
+      const Triangle& t = triangles_[std::size_t(k)];
+      const Point x = nearest_on_triangle(p, t.a, t.b, t.c);
+      const double distance = norm(p - x);
+      if (distance > least + 1e-9) continue;
+      // at an edge or corner the face that p sees most squarely decides about inside and outside
+      const double square = std::abs(dot(p - x, t.normal));
+      if (distance > least - 1e-9 && best.quad >= 0 && square <= facing) continue;
+      least = std::min(least, distance), facing = square;
+      best = {t.quad, x, t.normal, dot(p - x, t.normal) < 0 ? -distance : distance};
+    }
+  });
+  return best;
+}
+
+SurfacePoint BoneSurface::hit(const Point& origin, const Point& direction, double reach) const {
+  SurfacePoint best;
+  double first = reach;
+  const Point end = origin + reach * direction;
+  Point from, to;
+  for (int i = 0; i < 3; ++i) {
+    from[i] = std::min(origin[i], end[i]), to[i] = std::max(origin[i], end[i]);
+    if (to[i] < low[i] || from[i] > high[i]) return best;
+  }
+  visit(from, to, [&](std::size_t c) {
+    for (int k : cells_[c]) {
+      const Triangle& t = triangles_[std::size_t(k)];
+      // Moeller, Trumbore 1997
+      const Point e1 = t.b - t.a, e2 = t.c - t.a, h = cross(direction, e2);
+      const double determinant = dot(e1, h);
+      if (std::abs(determinant) < 1e-12) continue;
+      const Point s = origin - t.a;
+      const double u = dot(s, h) / determinant;
+      const Point q = cross(s, e1);
+      const double v = dot(direction, q) / determinant;
+      if (u < -1e-9 || v < -1e-9 || u + v > 1 + 1e-9) continue;
+      const double along = dot(e2, q) / determinant;
+      if (along < 0 || along > first) continue;
+      first = along;
+      best = {t.quad, origin + along * direction, t.normal, along};
+    }
+  });
+  return best;
+}
+
+int BoneSurface::nearest_node(const Point& p, double& distance) const {
+  int best = -1;
+  distance = 1e30;
+  for (int node : nodes_) {
+    const double d = norm(mesh_.nodes[std::size_t(node)] - p);
+    if (d < distance) distance = d, best = node;
+  }
+  return best;
+}
+
+}  // namespace fabrica::body

@@ -1,0 +1,132 @@
+#!/usr/bin/env python3
+"""Makes the shipped tables of ligaments and discs from the full ones: tools/joint_tables.py FOLDER data/anatomy/joints
+
+FOLDER holds joints_ligaments.csv and bones/discs.csv. What changes on the way:
+- every stiffness becomes a slope [N/mm], or two and the strain where they change, so that one law reads all rows;
+- the lumbar ligaments get the bilinear moduli of the source that the disc's law comes from (PMC5592017 Table 2), because
+  laws of two papers must not meet in one joint; the area stays, k = E A / L;
+- capsules of the facets lose their attachments: the source took the tips of wrong processes at several levels, the
+  program finds the joint on the bones themselves;
+- strands: as many as the ligament is broad; discs: the height that literature states for the level.
+"""
+import csv
+import pathlib
+import sys
+
+# E1, strain, E2 of the lumbar ligaments [MPa] (PMC5592017 Table 2)
+LUMBAR = {"ALL": (7.8, 0.12, 20.0), "PLL": (10.0, 0.11, 20.0), "LF": (15.0, 0.062, 19.5), "CL": (7.5, 0.25, 32.9),
+          "ITL": (10.0, 0.18, 58.7), "ISL": (10.0, 0.14, 11.6), "SSL": (8.0, 0.20, 15.0)}
+LUMBAR_SOURCE = "moduli PMC5592017 Table 2; area PMC2913991 Table 3; k = E A / L"
+# strands and breadth [mm] over which they spread
+BROAD = {"ALL": (3, 14), "PLL": (3, 10), "LF": (2, 8), "ISL": (2, 6), "SSL": (1, 0), "CL": (4, 10), "ITL": (1, 0),
+         "SI": (3, 16), "sacrospinous": (3, 14), "sacrotuberous": (3, 16), "iliolumbar": (3, 12), "pubic": (3, 14),
+         "inguinal": (1, 0), "iliofemoral": (3, 14), "pubofemoral": (2, 10), "ischiofemoral": (3, 14),
+         "capsule": (3, 14), "ligamentum": (1, 0), "MCL": (3, 12), "LCL": (2, 6), "ACL": (2, 5), "PCL": (2, 6),
+         "PFL": (1, 0), "pCAP": (3, 24), "patellar": (4, 24), "quadriceps": (4, 30), "deltoid": (2, 8),
+         "interosseous_talocalcaneal": (2, 8), "spring": (3, 12), "long": (3, 12), "plantar": (3, 20),
+         "achilles": (3, 14), "conoid": (2, 8), "trapezoid": (2, 10), "coracoacromial": (2, 12),
+         "coracohumeral": (2, 12), "MGHL": (2, 8), "IGHL": (2, 10), "SC": (2, 8), "costoclavicular": (2, 10),
+         "tectorial": (3, 10), "anterior": (3, 14), "posterior": (3, 14), "costovertebral": (3, 6),
+         "costotransverse": (2, 6), "interosseous": (3, 12)}
+# mean height by level [mm], literature
+HEIGHTS = {"L1": 10.0, "L2": 11.6, "L3": 12.5, "L4": 13.8, "L5": 13.0}
+# rows that the full table lacks: without them the hyoid bone would hang on nothing
+ADDED = [
+    ["stylohyoid", "head", "R", "skull", "head", 8.0, -38.0, -10.0, "hyoid", "head", 28.0, -12.0, -42.0, "points", 55, 5,
+     20, "", "", 1, 0, "", "E 1200 MPa (VIVA+ v0.2.5, Zajac 1989) would be 109 N/mm; taken softer for the muscle in series; "
+     "estimated", "estimated"],
+    ["geniohyoid", "head", "M", "mandible", "head", 90.0, 0.0, -45.0, "hyoid", "head", 55.0, 0.0, -48.0, "points", 35, 20,
+     5, "", "", 2, 10, "", "passive muscle; estimated", "estimated"],
+    ["thyrohyoid", "neck", "R", "hyoid", "head", 40.0, -16.0, -50.0, "manubrium", "thorax", 85.0, -12.0, 130.0, "points",
+     100, 20, 2, "", "", 1, 0, "", "passive infrahyoid muscles; estimated", "estimated"],
+]
+SHORTEST = 4.0  # [mm] reference length of ligaments that the source drew shorter: fibres run along the joint, not across
+
+
+def table(path):
+    with open(path, encoding="utf-8") as file:
+        return list(csv.DictReader(line for line in file if not line.startswith("#")))
+
+
+def breadth(name):
+    for key, value in BROAD.items():
+        if name.startswith(key) and (key not in ("CL", "SC", "LF") or name[len(key):len(key) + 1] in ("_", "")):
+            return value
+    return 1, 0
+
+
+def law(row, length):
+    """k1 [N/mm], strain1, k2, source; one slope: the toe of Blankevoort 1991 is added by the program"""
+    kind, area = row["name"].split("_")[0], float(row["area_mm2"] or 0)
+    source = row["source"]
+    if row["stiffness_unit"] == "N/mm (phases)":
+        e1, strain, e2 = LUMBAR[kind]
+        return e1 * area / length, strain, e2 * area / length, LUMBAR_SOURCE
+    k = float(row["stiffness"] or 0)
+    return (k / length if row["stiffness_unit"].startswith("N/strain") else k), "", "", source
+
+
+def ligaments(folder):
+    for row in table(folder / "joints_ligaments.csv"):
+        length = max(float(row["length_stand_mm"]), SHORTEST)
+        if row["name"].startswith("CL_"):
+            length = 8.0 if row["bone1"].startswith("L") else 6.0
+        k1, e1, k2, source = law(row, length)
+        strands, spread = breadth(row["name"])
+        slack = row["note"].split("slack ")[1].split(" mm")[0] if "slack" in row["note"] else ""
+        ends = [row[c] for c in ("x1_mm", "y1_mm", "z1_mm", "x2_mm", "y2_mm", "z2_mm")]
+        ends = ["0.0" if float(v) == 0 else v for v in ends]
+        attach = "facet" if row["name"].startswith("CL_") else "points"
+        if row["name"] in ("achilles_tendon", "quadriceps_tendon_insertion"):
+            k1, source = 10.0, "tendon in series with a passive muscle; estimated"
+        if row["name"] == "inguinal":
+            source += "; both ends on the hip bone"
+        confidence = "read" if source == LUMBAR_SOURCE else row["confidence"]
+        yield [row["name"], row["region"], row["side"], row["bone1"], row["frame1"], *ends[:3], row["bone2"],
+               row["frame2"], *ends[3:], attach, f"{length:g}", row["area_mm2"],
+               f"{k1:.4g}", e1 and f"{e1:g}", k2 and f"{k2:.4g}", strands, spread, slack, source, confidence]
+
+
+def discs(folder):
+    for row in table(folder / "bones/discs.csv"):
+        upper, lower = row["disc"].split("_")
+        if upper in HEIGHTS:
+            height, source = HEIGHTS[upper], "anatomyjournal.ir A-10-159-1"
+        elif upper.startswith("C") and upper != "C7":
+            height, source = 5.0, "e-neurospine 444: anterior 4.1, middle 5.8"
+        else:
+            height, source = float(row["mean_height_mm"]), "as measured; Fletcher 2015: 2.7 (T4-5) to 5.4 (T10-11)"
+        yield [row["disc"], upper, "sacrum" if lower == "S1" else lower,
+               *(f"{1000 * float(row[c]):.1f}" for c in ("x_stand_m", "y_stand_m", "z_stand_m")),
+               row["nx"], row["ny"], row["nz"], row["width_mm"], row["depth_mm"], row["area_mm2"],
+               row["mean_height_mm"], f"{height:g}", source]
+
+
+def write(path, comment, columns, rows):
+    with open(path, "w", encoding="utf-8", newline="") as file:
+        file.write(comment)
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(columns)
+        writer.writerows(rows)
+
+
+def main():
+    folder, target = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+    notice = ("# Attachments and sizes measured from BodyParts3D, (c) The Database Center for Life Science, CC BY-SA 4.0;"
+              " changes: scaled per region, reduced to points. See LICENSE in data/anatomy.\n")
+    write(target / "ligaments.csv", notice +
+          "# Ends in the frames of the bones [mm], right side or midline. length: reference, of strains. k1 to strain1, k2"
+          " beyond [N/mm of the whole ligament];\n# without strain1: one slope k1 behind a toe. strands over a breadth"
+          " of spread. slack: length without force, where the source states one.\n",
+          ["name", "region", "side", "bone1", "frame1", "x1", "y1", "z1", "bone2", "frame2", "x2", "y2", "z2", "attach",
+           "length", "area", "k1", "strain1", "k2", "strands", "spread", "slack", "source", "confidence"],
+          [*ligaments(folder), *ADDED])
+    write(target / "discs.csv", notice +
+          "# Centre and normal in the standing assembly [mm], global; width along y, depth along x; height: measured mean,"
+          " height_am50: to aim at.\n",
+          ["disc", "upper", "lower", "x", "y", "z", "nx", "ny", "nz", "width", "depth", "area", "height", "height_am50",
+           "source"], discs(folder))
+
+
+if __name__ == "__main__":
+    main()
