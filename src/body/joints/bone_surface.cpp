@@ -40,13 +40,15 @@ Point nearest_on_triangle(const Point& p, const Point& a, const Point& b, const 
   return a + (vb * sum) * ab + (vc * sum) * ac;
 }
 
-BoneSurface::BoneSurface(const BoneMesh& mesh) : mesh_(mesh) {
-  node_normals_.assign(mesh.nodes.size(), Point{0, 0, 0});
-  const auto at = [&](int node) { return mesh.nodes[std::size_t(node)]; };
+BoneSurface::BoneSurface(const std::vector<Point>& nodes,
+                         const std::vector<std::array<int, 4>>& quads)
+    : all_nodes_(nodes) {
+  node_normals_.assign(nodes.size(), Point{0, 0, 0});
+  const auto at = [&](int node) { return nodes[std::size_t(node)]; };
   low = {1e30, 1e30, 1e30}, high = {-1e30, -1e30, -1e30};
   double edge = 0;
-  for (std::size_t q = 0; q < mesh.surface.size(); ++q) {
-    const auto& s = mesh.surface[q];
+  for (std::size_t q = 0; q < quads.size(); ++q) {
+    const auto& s = quads[q];
     const Point x[4] = {at(s[0]), at(s[1]), at(s[2]), at(s[3])};
     const Point normal = cross(x[2] - x[0], x[3] - x[1]);
     for (int corner = 0; corner < 4; ++corner) {
@@ -66,7 +68,7 @@ BoneSurface::BoneSurface(const BoneMesh& mesh) : mesh_(mesh) {
   for (Point& normal : node_normals_) normal = unit(normal);
 
   // cells of about two edges
-  spacing_ = std::max(2 * edge / double(std::max<std::size_t>(mesh.surface.size(), 1)), 1e-3);
+  spacing_ = std::max(2 * edge / double(std::max<std::size_t>(quads.size(), 1)), 1e-3);
   for (int i = 0; i < 3; ++i) count_[i] = std::max(1, int((high[i] - low[i]) / spacing_) + 1);
   cells_.resize(std::size_t(count_[0]) * std::size_t(count_[1]) * std::size_t(count_[2]));
   for (std::size_t k = 0; k < triangles_.size(); ++k) {
@@ -149,7 +151,7 @@ int BoneSurface::nearest_node(const Point& p, double& distance) const {
   int best = -1;
   distance = 1e30;
   for (int node : nodes_) {
-    const double d = norm(mesh_.nodes[std::size_t(node)] - p);
+    const double d = norm(all_nodes_[std::size_t(node)] - p);
     if (d < distance) distance = d, best = node;
   }
   return best;

@@ -1,6 +1,7 @@
 #pragma once
 // Queries on the boundary of a meshed bone: nearest point with signed distance, first hit of a ray.
 // Each quad counts as two triangles.
+#include <array>
 #include <vector>
 
 #include "body/mesh/bone_mesh.h"
@@ -8,16 +9,16 @@
 namespace fabrica::body {
 
 struct SurfacePoint {
-  int quad = -1;        // of the mesh's surface, -1: none found
+  int quad = -1;  // of the mesh's surface, -1: none found
   Point point{0, 0, 0};
   Point normal{0, 0, 1};  // outward, unit
-  double distance = 0;  // [mm] negative inside (nearest query); along the ray (ray query)
+  double distance = 0;    // [mm] negative inside (nearest query); along the ray (ray query)
 };
 
 class BoneSurface {
  public:
-  // the mesh must outlive the surface and keep its nodes
-  explicit BoneSurface(const BoneMesh& mesh);
+  // nodes and quads must outlive the surface, and the nodes stay where they are
+  BoneSurface(const std::vector<Point>& nodes, const std::vector<std::array<int, 4>>& quads);
 
   // nearest point within reach [mm]; quad is -1 when there is none
   SurfacePoint nearest(const Point& p, double reach) const;
@@ -40,7 +41,7 @@ class BoneSurface {
   template <class F>
   void visit(const Point& from, const Point& to, F&& act) const;
 
-  const BoneMesh& mesh_;
+  const std::vector<Point>& all_nodes_;
   std::vector<Triangle> triangles_;
   std::vector<int> nodes_;
   std::vector<Point> node_normals_;

@@ -1,0 +1,46 @@
+#pragma once
+// The list of places where bones meet (data/anatomy/joints/articulations.csv), resolved for the
+// bones and sides at hand, and the clearing of their surfaces from one another.
+#include <string>
+#include <vector>
+
+#include "body/piece.h"
+
+namespace fabrica::body {
+
+enum class ArticulationKind { sliding, facet, joined, symphysis };
+
+struct Articulation {
+  std::string name;  // of the row
+  Side side;         // midline when both bones are
+  int a, b;          // indices of the bones
+  ArticulationKind kind;
+  double cartilage_a, cartilage_b;  // [mm]
+  double reach;                     // [mm] faces this near the other bone belong to the joint
+  int strands;                      // of the capsule
+  double stiffness;                 // [kN/mm] of the capsule
+  std::string source;
+};
+
+// All rows whose bones are both there: right and left of a paired row, both sides of a midline row
+// that says facet.
+std::vector<Articulation> articulations(const std::vector<PlacedBone>& bones);
+
+// Gap [mm] that the bones of an articulation shall have where they are nearest: room for cartilage.
+double wanted_gap(const Articulation& joint);
+
+struct ClearanceReport {
+  double largest_shift = 0;  // [mm] of a surface node
+  std::string largest_shift_bone;
+  double least_gap = 0;  // [mm] that is left between any two bones
+  std::string least_gap_pair;
+  double least_scaled_jacobian = 1;  // of the bricks of the bones that moved
+  std::string least_scaled_jacobian_bone;
+};
+
+// Moves the surface nodes of bones that stand nearer than the wanted gap (0.2 mm where no joint is)
+// apart, half each, along the normal of the nearer face; the nodes inside follow. Changes nodes and
+// mesh.nodes. A node that would turn a brick over stays and the gap left is reported.
+ClearanceReport clear_bones(std::vector<PlacedBone>& bones);
+
+}  // namespace fabrica::body

@@ -1,0 +1,309 @@
+#include "body/joints/cartilage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <set>
+
+#include "body/joints/bone_surface.h"
+#include "body/joints/joint_law.h"
+#include "body/joints/ligaments.h"
+#include "body/joints/piece_builder.h"
+#include "body/mesh/quality.h"
+
+namespace fabrica::body {
+
+namespace {
+
+constexpr double contact_gap = 0.1;   // [mm] left between layers of cartilage
+constexpr double thinnest = 0.15;     // [mm] of a layer
+constexpr double capsule_length = 8;  // [mm] reference length of capsules without a row
+
+// faces of one bone that look at another
+struct Patch {
+  std::vector<int> quads;  // of the bone's surface
+  double gap = 1e30;       // [mm] least
+};
+
+class ArticulationMaker {
+ public:
+  ArticulationMaker(const std::vector<PlacedBone>& bones, BetweenBones& between)
+      : bones_(bones), between_(between), surfaces_(bones.size()) {}
+  ArticulationReport add(const Articulation& joint);
+
+ private:
+  const BoneSurface& surface(int bone);
+  bool belongs(const Articulation& joint, int bone, const Point& centre) const;
+  Patch patch(const Articulation& joint, int bone, int other, double reach);
+  std::vector<std::array<PieceNode, 4>> layer(const Articulation& joint, int bone, int other,
+                                              const Patch& patch, double cartilage,
+                                              double& gap_left);
+  void sliding(const Articulation& joint, const Patch& a, const Patch& b,
+               ArticulationReport& report);
+  void joined(const Articulation& joint, const Patch& a, const Patch& b);
+  void symphysis(const Articulation& joint, const Patch& a);
+  void capsule(const Articulation& joint, const Patch& a, const Patch& b);
+  std::vector<int> nodes_of(int bone, const Patch& patch) const;
+  std::array<PieceNode, 4> quad_of(int bone, int quad) const;
+  const PlacedBone& bone(int index) const { return bones_[std::size_t(index)]; }
+  std::string name(const Articulation& joint) const {
+    return fmt::format("{}.{}.{}", name_of(bone(joint.a).region), name_of(joint.side), joint.name);
+  }
+
+  const std::vector<PlacedBone>& bones_;
+  BetweenBones& between_;
+  std::vector<std::unique_ptr<BoneSurface>> surfaces_;
+};
+
+const BoneSurface& ArticulationMaker::surface(int index) {
+  auto& kept = surfaces_[std::size_t(index)];
+  if (!kept) kept = std::make_unique<BoneSurface>(bone(index).nodes, bone(index).mesh.surface);
+  return *kept;
+}
+
+// Facets: behind the body and beside the midline. Other joints take every face.
+bool ArticulationMaker::belongs(const Articulation& joint, int index, const Point& centre) const {
+  if (joint.kind != ArticulationKind::facet) return true;
+  const Point local = bone(index).placement.inverse(centre);
+  // the sacrum's frame is the pelvis: its facets lie behind the promontory
+  const double behind = bone(index).mesh.name == "sacrum" ? -33 : -6;
+  const double beside = joint.side == Side::left ? local.y : -local.y;
+  return local.x < behind * bone(index).mesh.scale.x && beside > 4;
+}
+
+Patch ArticulationMaker::patch(const Articulation& joint, int index, int other, double reach) {
+  Patch found;
+  const PlacedBone& here = bone(index);
+  for (std::size_t q = 0; q < here.mesh.surface.size(); ++q) {
+    const auto& s = here.mesh.surface[q];
+    const Point x[4] = {here.nodes[std::size_t(s[0])], here.nodes[std::size_t(s[1])],
+                        here.nodes[std::size_t(s[2])], here.nodes[std::size_t(s[3])]};
+    const Point centre = 0.25 * (x[0] + x[1] + x[2] + x[3]);
+    const SurfacePoint there = surface(other).nearest(centre, reach);
+    if (there.quad < 0 || !belongs(joint, index, centre)) continue;
+    if (dot(quad_normal(x[0], x[1], x[2], x[3]), there.normal) > -0.4) continue;
+    found.quads.push_back(int(q));
+    found.gap = std::min(found.gap, there.distance);
+  }
+  return found;
+}
+
+std::vector<int> ArticulationMaker::nodes_of(int index, const Patch& patch) const {
+  std::set<int> nodes;
+  for (int q : patch.quads)
+    for (int n : bone(index).mesh.surface[std::size_t(q)]) nodes.insert(n);
+  return {nodes.begin(), nodes.end()};
+}
+
+std::array<PieceNode, 4> ArticulationMaker::quad_of(int index, int quad) const {
+  std::array<PieceNode, 4> corners;
+  for (std::size_t i = 0; i < 4; ++i)
+    corners[i] = bone_node(bones_, index, bone(index).mesh.surface[std::size_t(quad)][i]);
+  return corners;
+}
+
+// One layer of bricks on the patch, towards the other bone; gives its free faces.
+std::vector<std::array<PieceNode, 4>> ArticulationMaker::layer(const Articulation& joint, int index,
+                                                               int other, const Patch& patch,
+                                                               double cartilage, double& gap) {
+  std::vector<std::array<PieceNode, 4>> faces;
+  if (cartilage <= 0) {  // bone on bone
+    for (int q : patch.quads) faces.push_back(quad_of(index, q));
+    return faces;
+  }
+  const PlacedBone& here = bone(index);
+  std::map<int, Point> normals;
+  for (int q : patch.quads) {
+    const auto& s = here.mesh.surface[std::size_t(q)];
+    const Point n = quad_normal(here.nodes[std::size_t(s[0])], here.nodes[std::size_t(s[1])],
+                                here.nodes[std::size_t(s[2])], here.nodes[std::size_t(s[3])]);
+    for (int corner : s) normals.try_emplace(corner, Point{0, 0, 0}).first->second += n;
+  }
+  PieceBuilder builder(bones_);
+  std::map<int, int> top;
+  for (auto& [node, normal] : normals) {
+    const Point& p = here.nodes[std::size_t(node)];
+    normal = (1 / norm(normal)) * normal;
+    const SurfacePoint there = surface(other).nearest(p, 4 * joint.reach);
+    const double distance = there.quad < 0 ? 2 * joint.reach : there.distance;
+    const double room = 0.5 * (distance - contact_gap);
+    const double thickness = std::clamp(room, thinnest, cartilage);
+    gap = std::min(gap, distance - 2 * thickness);
+    top[node] = builder.own(p + thickness * normal);
+  }
+  for (int q : patch.quads) {
+    const auto& s = here.mesh.surface[std::size_t(q)];
+    std::array<int, 8> brick;
+    for (std::size_t i = 0; i < 4; ++i) {
+      brick[i] = builder.of_bone(index, s[i]);
+      brick[i + 4] = top[s[i]];
+    }
+    Corners corners;
+    for (std::size_t i = 0; i < 8; ++i) corners[i] = builder.at(brick[i]);
+    if (scaled_jacobian(corners) < 0.2) continue;  // folds at a sharp rim: the bone stays bare
+    builder.piece.bricks.push_back(brick);
+  }
+  const int number = int(between_.pieces.size());
+  builder.piece.name = name(joint) + ".cartilage_" + here.mesh.name;
+  builder.piece.region = here.region;
+  builder.piece.kind = PieceKind::brick;
+  builder.piece.law = joint_law("cartilage");
+  builder.piece.bone_a = builder.piece.bone_b = part_name(here, "");
+  builder.piece.source = joint.source;
+  for (const auto& brick : builder.piece.bricks) {
+    std::array<PieceNode, 4> face;
+    for (std::size_t i = 0; i < 4; ++i) face[i] = piece_node(builder.piece, number, brick[i + 4]);
+    faces.push_back(face);
+  }
+  if (!builder.piece.bricks.empty()) between_.pieces.push_back(std::move(builder.piece));
+  return faces;
+}
+
+void ArticulationMaker::sliding(const Articulation& joint, const Patch& a, const Patch& b,
+                                ArticulationReport& report) {
+  report.contact_gap = 1e30;
+  ContactPair contact;
+  contact.name = name(joint);
+  contact.friction = 0.02;
+  contact.source = "friction of cartilage on cartilage 0.02; estimated";
+  contact.a.quads = layer(joint, joint.a, joint.b, a, joint.cartilage_a, report.contact_gap);
+  contact.b.quads = layer(joint, joint.b, joint.a, b, joint.cartilage_b, report.contact_gap);
+  if (!contact.a.quads.empty() && !contact.b.quads.empty())
+    between_.contacts.push_back(std::move(contact));
+  capsule(joint, a, b);
+}
+
+void ArticulationMaker::joined(const Articulation& joint, const Patch& a, const Patch& b) {
+  Tie tie;
+  tie.name = name(joint);
+  for (int node : nodes_of(joint.a, a)) tie.a.push_back(bone_node(bones_, joint.a, node));
+  for (int q : b.quads) tie.b.quads.push_back(quad_of(joint.b, q));
+  between_.ties.push_back(std::move(tie));
+}
+
+// The left hip bone is the mirror image of the right one node by node: bricks between a face and
+// its image.
+void ArticulationMaker::symphysis(const Articulation& joint, const Patch& a) {
+  constexpr int layers = 2;
+  PieceBuilder builder(bones_);
+  std::map<std::pair<int, int>, int> level;  // node of the bone, layer -> node of the piece
+  for (int node : nodes_of(joint.a, a))
+    for (int k = 0; k <= layers; ++k) {
+      const Point &p = bone(joint.a).nodes[std::size_t(node)],
+                  &q = bone(joint.b).nodes[std::size_t(node)];
+      const double t = double(k) / layers;
+      level[{node, k}] = k == 0        ? builder.of_bone(joint.a, node)
+                         : k == layers ? builder.of_bone(joint.b, node)
+                                       : builder.own((1 - t) * p + t * q);
+    }
+  for (int q : a.quads) {
+    const auto& s = bone(joint.a).mesh.surface[std::size_t(q)];
+    for (int k = 0; k < layers; ++k) {
+      std::array<int, 8> brick;
+      for (std::size_t i = 0; i < 4; ++i)
+        brick[i] = level[{s[i], k}], brick[i + 4] = level[{s[i], k + 1}];
+      builder.piece.bricks.push_back(brick);
+    }
+  }
+  builder.piece.name = name(joint) + ".disc";
+  builder.piece.region = bone(joint.a).region;
+  builder.piece.kind = PieceKind::brick;
+  builder.piece.law = joint_law("symphysis");
+  builder.piece.bone_a = part_name(bone(joint.a), "");
+  builder.piece.bone_b = part_name(bone(joint.b), "");
+  builder.piece.source = joint.source;
+  between_.pieces.push_back(std::move(builder.piece));
+}
+
+// Strands around the joint: the node of a's faces that lies farthest out in each sector about their
+// middle, to the nearest node of b's faces.
+void ArticulationMaker::capsule(const Articulation& joint, const Patch& a, const Patch& b) {
+  CapsuleLaw law{
+      {capsule_length, joint.stiffness, 0, 0, 0}, joint.strands, joint.source, "estimated"};
+  if (joint.kind == ArticulationKind::facet)
+    law = facet_capsule(bone(joint.a).mesh.name, bone(joint.b).mesh.name);
+  if (law.strands == 0) return;
+
+  const std::vector<int> nodes_a = nodes_of(joint.a, a), nodes_b = nodes_of(joint.b, b);
+  Point centre{0, 0, 0}, normal{0, 0, 0};
+  for (int n : nodes_a) {
+    centre += (1.0 / double(nodes_a.size())) * bone(joint.a).nodes[std::size_t(n)];
+    normal += surface(joint.a).node_normal(n);
+  }
+  normal = norm(normal) > 1e-9 ? (1 / norm(normal)) * normal : Point{0, 0, 1};
+  const Point first = std::abs(normal.x) < 0.7 ? Point{1, 0, 0} : Point{0, 1, 0};
+  Point e1 = cross(normal, first);
+  e1 = (1 / norm(e1)) * e1;
+  const Point e2 = cross(normal, e1);
+
+  std::vector<int> chosen(std::size_t(law.strands), -1);
+  std::vector<double> radius(std::size_t(law.strands), -1);
+  for (int n : nodes_a) {
+    const Point d = bone(joint.a).nodes[std::size_t(n)] - centre;
+    const double angle = std::atan2(dot(d, e2), dot(d, e1)) + M_PI;
+    const std::size_t sector =
+        std::size_t(std::min(int(angle / (2 * M_PI) * law.strands), law.strands - 1));
+    if (norm(d) > radius[sector]) radius[sector] = norm(d), chosen[sector] = n;
+  }
+  PieceBuilder builder(bones_);
+  for (int n : chosen) {
+    if (n < 0) continue;
+    const Point& p = bone(joint.a).nodes[std::size_t(n)];
+    const int m = *std::min_element(nodes_b.begin(), nodes_b.end(), [&](int i, int j) {
+      return norm(bone(joint.b).nodes[std::size_t(i)] - p) <
+             norm(bone(joint.b).nodes[std::size_t(j)] - p);
+    });
+    builder.piece.lines.push_back({builder.of_bone(joint.a, n), builder.of_bone(joint.b, m)});
+  }
+  // empty sectors: the others carry their share
+  const int strands = int(builder.piece.lines.size());
+  builder.piece.name = name(joint) + ".capsule";
+  builder.piece.region = bone(joint.a).region;
+  builder.piece.kind = PieceKind::spring;
+  builder.piece.law = ligament_curve(law.stiffness, strands, law.source, law.flag);
+  builder.piece.bone_a = part_name(bone(joint.a), "");
+  builder.piece.bone_b = part_name(bone(joint.b), "");
+  builder.piece.source = law.source;
+  between_.pieces.push_back(std::move(builder.piece));
+}
+
+ArticulationReport ArticulationMaker::add(const Articulation& joint) {
+  ArticulationReport report;
+  report.name = name(joint);
+  // bones that stand farther apart than the table says are looked for farther
+  Patch a, b;
+  for (double factor : {1.0, 1.5, 2.0, 3.0}) {
+    report.reach = factor * joint.reach;
+    a = patch(joint, joint.a, joint.b, report.reach);
+    b = patch(joint, joint.b, joint.a, report.reach);
+    if (a.quads.size() >= 2 && b.quads.size() >= 2) break;
+  }
+  report.faces_a = int(a.quads.size()), report.faces_b = int(b.quads.size());
+  report.gap = std::min(a.gap, b.gap);
+  if (a.quads.empty() || b.quads.empty()) {
+    report.omitted = fmt::format("no faces look at each other within {:g} mm", report.reach);
+    return report;
+  }
+  if (joint.kind == ArticulationKind::joined)
+    joined(joint, a, b);
+  else if (joint.kind == ArticulationKind::symphysis)
+    symphysis(joint, a);
+  else
+    sliding(joint, a, b, report);
+  return report;
+}
+
+}  // namespace
+
+std::vector<ArticulationReport> add_articulations(const std::vector<PlacedBone>& bones,
+                                                  BetweenBones& between) {
+  ArticulationMaker maker(bones, between);
+  std::vector<ArticulationReport> reports;
+  for (const Articulation& joint : articulations(bones)) reports.push_back(maker.add(joint));
+  return reports;
+}
+
+}  // namespace fabrica::body

@@ -1,0 +1,190 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include "body/joints/articulation.h"
+#include "body/joints/bone_surface.h"
+#include "body/mesh/quality.h"
+
+namespace fabrica::body {
+
+namespace {
+
+constexpr double least_gap = 0.2;  // [mm] where no joint is
+constexpr double deepest = 5;      // [mm] deeper is another side of the bone, not penetration
+constexpr double least_jacobian = 0.25;
+constexpr int passes = 14;
+
+// neighbours of each node along the edges of the bricks
+std::vector<std::vector<int>> edges_of(const BoneMesh& mesh) {
+  std::vector<std::vector<int>> neighbours(mesh.nodes.size());
+  for (const Brick& brick : mesh.bricks)
+    for (int corner = 0; corner < 8; ++corner)
+      for (int other : corner_neighbours[corner])
+        neighbours[std::size_t(brick[std::size_t(corner)])].push_back(brick[std::size_t(other)]);
+  for (auto& list : neighbours) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  }
+  return neighbours;
+}
+
+// A bone whose surface moves.
+class Movable {
+ public:
+  explicit Movable(PlacedBone& bone) : bone(bone), shift_(bone.nodes.size()) { rebuild(); }
+
+  void rebuild() { surface = std::make_unique<BoneSurface>(bone.nodes, bone.mesh.surface); }
+  // the longest wish of a pass counts
+  void wish(int node, const Point& shift) {
+    Point& kept = shift_[std::size_t(node)];
+    if (dot(shift, shift) > dot(kept, kept)) kept = shift;
+  }
+  // moves the surface nodes by their wishes and the inner ones along; says whether any moved
+  bool move();
+
+  PlacedBone& bone;
+  std::unique_ptr<BoneSurface> surface;
+  double total = 0;  // [mm] longest shift of a node so far
+
+ private:
+  void carry_inside();
+  std::vector<Point> shift_, start_;
+  std::vector<std::vector<int>> neighbours_;
+  std::vector<char> on_surface_;
+};
+
+// inner nodes: the mean shift of their neighbours, Jacobi iteration of Laplace's equation
+void Movable::carry_inside() {
+  for (int sweep = 0; sweep < 12; ++sweep) {
+    std::vector<Point> next = shift_;
+    for (std::size_t n = 0; n < shift_.size(); ++n) {
+      if (on_surface_[n] || neighbours_[n].empty()) continue;
+      Point sum{0, 0, 0};
+      for (int m : neighbours_[n]) sum += shift_[std::size_t(m)];
+      next[n] = (1.0 / double(neighbours_[n].size())) * sum;
+    }
+    shift_ = std::move(next);
+  }
+}
+
+bool Movable::move() {
+  bool any = false;
+  for (const Point& s : shift_) any = any || dot(s, s) > 0;
+  if (!any) return false;
+  if (start_.empty()) {
+    start_ = bone.nodes;
+    neighbours_ = edges_of(bone.mesh);
+    on_surface_.assign(bone.nodes.size(), 0);
+    for (int node : surface->nodes()) on_surface_[std::size_t(node)] = 1;
+  }
+  carry_inside();
+  const std::vector<Point> before = bone.nodes;
+  for (std::size_t n = 0; n < shift_.size(); ++n) bone.nodes[n] += shift_[n];
+  // bricks that would get too thin: their nodes stay where they were
+  for (int round = 0; round < 6; ++round) {
+    bool restored = false;
+    for (const Brick& brick : bone.mesh.bricks) {
+      if (scaled_jacobian(corners_of(bone.nodes, brick)) >= least_jacobian) continue;
+      for (int n : brick) {
+        restored = restored || norm(bone.nodes[std::size_t(n)] - before[std::size_t(n)]) > 0;
+        bone.nodes[std::size_t(n)] = before[std::size_t(n)];
+      }
+    }
+    if (!restored) break;
+  }
+  for (std::size_t n = 0; n < shift_.size(); ++n) {
+    total = std::max(total, norm(bone.nodes[n] - start_[n]));
+    shift_[n] = {0, 0, 0};
+  }
+  rebuild();
+  return true;
+}
+
+struct Pair {
+  int a, b;
+  double gap;  // wanted
+};
+
+bool boxes_meet(const BoneSurface& a, const BoneSurface& b, double gap) {
+  for (int i = 0; i < 3; ++i)
+    if (a.low[i] > b.high[i] + gap || b.low[i] > a.high[i] + gap) return false;
+  return true;
+}
+
+std::vector<Pair> near_pairs(const std::vector<Movable>& bones,
+                             const std::vector<Articulation>& joints) {
+  std::map<std::pair<int, int>, double> wanted;
+  for (const Articulation& joint : joints)
+    wanted[std::minmax(joint.a, joint.b)] = wanted_gap(joint);
+  std::vector<Pair> pairs;
+  for (int a = 0; a < int(bones.size()); ++a)
+    for (int b = a + 1; b < int(bones.size()); ++b) {
+      const auto joint = wanted.find({a, b});
+      const double gap = joint == wanted.end() ? least_gap : joint->second;
+      if (boxes_meet(*bones[std::size_t(a)].surface, *bones[std::size_t(b)].surface, gap))
+        pairs.push_back({a, b, gap});
+    }
+  return pairs;
+}
+
+// wishes of the nodes of a against the surface of b; gives the least gap found
+double push_apart(Movable& a, Movable& b, double gap) {
+  double least = gap;
+  for (int node : a.surface->nodes()) {
+    const Point& p = a.bone.nodes[std::size_t(node)];
+    const SurfacePoint there = b.surface->nearest(p, std::max(gap, deepest));
+    if (there.quad < 0 || there.distance >= gap) continue;
+    // on the far side of a thin bone the nearest face looks the same way as this one
+    if (there.distance < 0 && dot(a.surface->node_normal(node), there.normal) > 0.3) continue;
+    least = std::min(least, there.distance);
+    const Point apart = (0.5 * (gap - there.distance) + 0.01) * there.normal;
+    a.wish(node, apart);
+    for (int corner : b.bone.mesh.surface[std::size_t(there.quad)]) b.wish(corner, -apart);
+  }
+  return least;
+}
+
+}  // namespace
+
+ClearanceReport clear_bones(std::vector<PlacedBone>& bones) {
+  const std::vector<Articulation> joints = articulations(bones);
+  std::vector<Movable> movable;
+  movable.reserve(bones.size());
+  for (PlacedBone& bone : bones) movable.emplace_back(bone);
+  const std::vector<Pair> pairs = near_pairs(movable, joints);
+
+  ClearanceReport report;
+  for (int pass = 0; pass <= passes; ++pass) {
+    report.least_gap = 1e30;
+    for (const Pair& pair : pairs) {
+      Movable &a = movable[std::size_t(pair.a)], &b = movable[std::size_t(pair.b)];
+      const double gap = std::min(push_apart(a, b, pair.gap), push_apart(b, a, pair.gap));
+      if (gap < report.least_gap) {
+        report.least_gap = gap;
+        report.least_gap_pair = part_name(a.bone, "") + " " + part_name(b.bone, "");
+      }
+    }
+    if (pass == passes) break;
+    bool moved = false;
+    for (Movable& bone : movable) moved = bone.move() || moved;
+    if (!moved) break;
+  }
+  for (Movable& m : movable) {
+    if (m.total == 0) continue;
+    if (m.total > report.largest_shift)
+      report.largest_shift = m.total, report.largest_shift_bone = part_name(m.bone, "");
+    for (std::size_t n = 0; n < m.bone.nodes.size(); ++n)
+      m.bone.mesh.nodes[n] = m.bone.placement.inverse(m.bone.nodes[n]);
+    for (const Brick& brick : m.bone.mesh.bricks) {
+      const double jacobian = scaled_jacobian(corners_of(m.bone.nodes, brick));
+      if (jacobian < report.least_scaled_jacobian)
+        report.least_scaled_jacobian = jacobian,
+        report.least_scaled_jacobian_bone = part_name(m.bone, "");
+    }
+  }
+  return report;
+}
+
+}  // namespace fabrica::body

@@ -1,0 +1,335 @@
+#include "body/joints/disc.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "body/joints/disc_frame.h"
+#include "body/joints/joint_law.h"
+#include "body/joints/piece_builder.h"
+#include "body/mesh/quality.h"
+#include "body/tables.h"
+
+namespace fabrica::body {
+
+namespace {
+
+constexpr double nucleus_radius = 0.65;  // of the section: 42 % of its area
+constexpr double most_shift = 2.5;       // [mm] of an endplate
+
+// E [MPa] of the fibres from the outermost ring inwards (s41598-025-22755-z Table 1: 550 to 360
+// MPa) and their share of the annulus (Shirazi-Adl 1986: 16 %)
+constexpr double fibre_outer = 0.550, fibre_inner = 0.360, fibre_share = 0.16;
+
+struct DiscGrid {
+  int across, rings, layers;  // bricks across the nucleus, in the annulus, along the height
+};
+
+DiscGrid grid_of(Resolution resolution) {
+  if (resolution == Resolution::coarse) return {4, 2, 2};
+  if (resolution == Resolution::standard) return {6, 3, 3};
+  return {8, 4, 4};
+}
+
+// a place of the section, forward and left, of a point (a, b) of the square [-1, 1]^2; towards its
+// middle the square keeps its form, so that no corner of a brick opens to 180 degrees
+std::array<double, 2> nucleus_place(const DiscSpace& space, double a, double b) {
+  const double r = std::max(std::abs(a), std::abs(b));
+  if (r == 0) return {0, 0};
+  const double phi = std::abs(a) >= std::abs(b) ? M_PI / 4 * b / a + (a < 0 ? M_PI : 0)
+                                                : M_PI / 2 - M_PI / 4 * a / b + (b < 0 ? M_PI : 0);
+  const double round = 0.65, edge = nucleus_radius * space.radius(phi < 0 ? phi + 2 * M_PI : phi);
+  return {edge * (round * r * std::cos(phi) + (1 - round) * 0.82 * a),
+          edge * (round * r * std::sin(phi) + (1 - round) * 0.82 * b)};
+}
+
+class DiscMaker {
+ public:
+  DiscMaker(const std::vector<PlacedBone>& bones, const DiscRow& row, BetweenBones& between)
+      : bones_(bones),
+        row_(row),
+        between_(between),
+        space_(bones, row),
+        grid_(grid_of(bones[std::size_t(row.upper)].mesh.resolution)) {}
+  DiscReport make();
+
+ private:
+  using Column = std::vector<int>;  // nodes of the nucleus or of a ring from below to above
+  std::vector<Point> points(double forward, double left) const;
+  std::vector<std::array<double, 2>> rim() const;
+  void nucleus(DiscReport& report);
+  void ring(int number, DiscReport& report);
+  void fibres(int ring_piece, int number);
+  void ties();
+  void finish(PieceBuilder& builder, const std::string& tissue, const char* law,
+              DiscReport& report);
+
+  const std::vector<PlacedBone>& bones_;
+  const DiscRow& row_;
+  BetweenBones& between_;
+  DiscSpace space_;
+  DiscGrid grid_;
+  // of the piece made last: its outer columns, counter-clockwise
+  int last_piece_ = -1;
+  std::vector<Column> last_columns_;
+  std::vector<PieceNode> top_, bottom_;
+};
+
+// Nodes of a line of the disc from the lower to the upper endplate. Where the rim misses an
+// endplate the line is taken a little farther in.
+std::vector<Point> DiscMaker::points(double forward, double left) const {
+  std::optional<DiscLine> at;
+  double factor = 1;
+  for (; !at && factor > 0.5; factor -= 0.02) at = space_.line(factor * forward, factor * left);
+  if (!at)
+    throw BodyError(
+        fmt::format("disc {}: no endplates face each other {:.1f} mm ahead, {:.1f} mm "
+                    "left of its middle",
+                    row_.name, forward, left));
+  std::vector<Point> line;
+  for (int k = 0; k <= grid_.layers; ++k) {
+    const double t = double(k) / grid_.layers;
+    line.push_back((1 - t) * at->lower.point + t * at->upper.point);
+  }
+  return line;
+}
+
+// the edge of the square, counter-clockwise from its corner (1, -1)
+std::vector<std::array<double, 2>> DiscMaker::rim() const {
+  std::vector<std::array<double, 2>> edge;
+  const int m = grid_.across;
+  const auto at = [&](int i) { return 2.0 * i / m - 1; };
+  for (int i = 0; i < m; ++i) edge.push_back({1, at(i)});
+  for (int i = 0; i < m; ++i) edge.push_back({-at(i), 1});
+  for (int i = 0; i < m; ++i) edge.push_back({-1, -at(i)});
+  for (int i = 0; i < m; ++i) edge.push_back({at(i), -1});
+  return edge;
+}
+
+void DiscMaker::nucleus(DiscReport& report) {
+  PieceBuilder builder(bones_);
+  const int m = grid_.across;
+  std::map<std::pair<int, int>, Column> columns;
+  for (int i = 0; i <= m; ++i)
+    for (int j = 0; j <= m; ++j) {
+      const auto place = nucleus_place(space_, 2.0 * i / m - 1, 2.0 * j / m - 1);
+      for (const Point& p : points(place[0], place[1])) columns[{i, j}].push_back(builder.own(p));
+    }
+  for (int i = 0; i < m; ++i)
+    for (int j = 0; j < m; ++j)
+      for (std::size_t k = 0; k < std::size_t(grid_.layers); ++k) {
+        const Column &a = columns[{i, j}], &b = columns[{i + 1, j}], &c = columns[{i + 1, j + 1}],
+                     &d = columns[{i, j + 1}];
+        builder.piece.bricks.push_back(
+            {a[k], b[k], c[k], d[k], a[k + 1], b[k + 1], c[k + 1], d[k + 1]});
+      }
+  last_columns_.clear();
+  for (const auto& [a, b] : rim())
+    last_columns_.push_back(
+        columns[{int(std::lround((a + 1) * m / 2)), int(std::lround((b + 1) * m / 2))}]);
+  last_piece_ = int(between_.pieces.size());
+  for (auto& [key, column] : columns) {
+    bottom_.push_back(piece_node(builder.piece, last_piece_, column.front()));
+    top_.push_back(piece_node(builder.piece, last_piece_, column.back()));
+  }
+  finish(builder, "nucleus", "nucleus", report);
+}
+
+// number 1 lies next to the nucleus
+void DiscMaker::ring(int number, DiscReport& report) {
+  PieceBuilder builder(bones_);
+  const auto edge = rim();
+  const std::size_t n = edge.size();
+  const double t = double(number) / grid_.rings;
+  std::vector<Column> inner(n), outer(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    for (int node : last_columns_[i])
+      inner[i].push_back(builder.of_piece(between_.pieces, last_piece_, node));
+    // towards the rim along the direction of the square's edge
+    const auto from = nucleus_place(space_, edge[i][0], edge[i][1]);
+    const double phi = std::atan2(from[1], from[0]);
+    const double r = space_.radius(phi < 0 ? phi + 2 * M_PI : phi);
+    const std::array<double, 2> to{r * std::cos(phi), r * std::sin(phi)};
+    for (const Point& p : points((1 - t) * from[0] + t * to[0], (1 - t) * from[1] + t * to[1]))
+      outer[i].push_back(builder.own(p));
+  }
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t k = 0; k < std::size_t(grid_.layers); ++k) {
+      const std::size_t j = (i + 1) % n;
+      builder.piece.bricks.push_back({inner[i][k], outer[i][k], outer[j][k], inner[j][k],
+                                      inner[i][k + 1], outer[i][k + 1], outer[j][k + 1],
+                                      inner[j][k + 1]});
+    }
+  last_piece_ = int(between_.pieces.size());
+  last_columns_ = outer;
+  for (const Column& column : outer) {
+    bottom_.push_back(piece_node(builder.piece, last_piece_, column.front()));
+    top_.push_back(piece_node(builder.piece, last_piece_, column.back()));
+  }
+  finish(builder, fmt::format("annulus{}", number), "annulus", report);
+  fibres(last_piece_, number);
+}
+
+// Two fibres cross each outer face of a ring; each stands for half of the fibres of its brick:
+//   k = E A / L,   A L = fibre_share V / 2
+void DiscMaker::fibres(int ring_piece, int number) {
+  PieceBuilder builder(bones_);
+  const Piece& ring = between_.pieces[std::size_t(ring_piece)];
+  const double t = grid_.rings == 1 ? 1 : double(number - 1) / (grid_.rings - 1);
+  const double E = (1 - t) * fibre_inner + t * fibre_outer;
+  for (const auto& brick : ring.bricks) {
+    Corners corners;
+    for (std::size_t i = 0; i < 8; ++i) corners[i] = ring.nodes[std::size_t(brick[i])].x;
+    const double volume = volume_of(corners);
+    for (const auto& [a, b] : {std::pair<int, int>{1, 6}, {2, 5}}) {
+      const double length = norm(corners[std::size_t(a)] - corners[std::size_t(b)]);
+      builder.piece.lines.push_back(
+          {builder.of_piece(between_.pieces, ring_piece, brick[std::size_t(a)]),
+           builder.of_piece(between_.pieces, ring_piece, brick[std::size_t(b)])});
+      builder.piece.line_scale.push_back(E * fibre_share * volume / 2 / (length * length));
+    }
+  }
+  const PlacedBone& upper = bones_[std::size_t(row_.upper)];
+  builder.piece.name =
+      fmt::format("{}.mid.disc_{}.fibres{}", name_of(upper.region), row_.name, number);
+  builder.piece.region = upper.region;
+  builder.piece.kind = PieceKind::spring;
+  builder.piece.law = {"MAT_SPRING_NONLINEAR_ELASTIC",
+                       {},
+                       "lcd",
+                       {{-1000, 0}, {0, 0}, {1000, 1000}},
+                       "moduli s41598-025-22755-z Table 1; share of the annulus Shirazi-Adl 1986",
+                       "read"};
+  builder.piece.source = builder.piece.law.source;
+  builder.piece.bone_a = part_name(upper, "");
+  builder.piece.bone_b = part_name(bones_[std::size_t(row_.lower)], "");
+  between_.pieces.push_back(std::move(builder.piece));
+}
+
+void DiscMaker::finish(PieceBuilder& builder, const std::string& tissue, const char* law,
+                       DiscReport& report) {
+  const PlacedBone& upper = bones_[std::size_t(row_.upper)];
+  Piece& piece = builder.piece;
+  for (const auto& brick : piece.bricks) {
+    Corners corners;
+    for (std::size_t i = 0; i < 8; ++i) corners[i] = builder.at(brick[i]);
+    report.least_scaled_jacobian = std::min(report.least_scaled_jacobian, scaled_jacobian(corners));
+    report.volume += volume_of(corners);
+    ++report.bricks;
+  }
+  piece.name = fmt::format("{}.mid.disc_{}.{}", name_of(upper.region), row_.name, tissue);
+  piece.region = upper.region;
+  piece.kind = PieceKind::brick;
+  piece.law = joint_law(law);
+  piece.bone_a = part_name(upper, "");
+  piece.bone_b = part_name(bones_[std::size_t(row_.lower)], "");
+  piece.source = "discs.csv; " + piece.law.source;
+  between_.pieces.push_back(std::move(piece));
+}
+
+// The faces of an endplate: those that a node of the disc lies on and their neighbours.
+void DiscMaker::ties() {
+  for (const bool above : {true, false}) {
+    const int index = above ? row_.upper : row_.lower;
+    const PlacedBone& bone = bones_[std::size_t(index)];
+    const BoneSurface surface(bone.nodes, bone.mesh.surface);
+    std::set<int> nodes;
+    Tie tie;
+    tie.name = fmt::format("{}.mid.disc_{}.{}", name_of(bone.region), row_.name,
+                           above ? "upper" : "lower");
+    tie.a = above ? top_ : bottom_;
+    for (const PieceNode& n : tie.a) {
+      const SurfacePoint at = surface.nearest(n.x, 2);
+      if (at.quad < 0) continue;
+      for (int corner : bone.mesh.surface[std::size_t(at.quad)]) nodes.insert(corner);
+    }
+    for (const auto& quad : bone.mesh.surface) {
+      if (std::none_of(quad.begin(), quad.end(), [&](int n) { return nodes.count(n) > 0; }))
+        continue;
+      std::array<PieceNode, 4> corners;
+      for (std::size_t i = 0; i < 4; ++i) corners[i] = bone_node(bones_, index, quad[i]);
+      tie.b.quads.push_back(corners);
+    }
+    between_.ties.push_back(std::move(tie));
+  }
+}
+
+DiscReport DiscMaker::make() {
+  DiscReport report;
+  report.name = row_.name;
+  report.wanted = row_.wanted, report.table_area = row_.area;
+  report.least_scaled_jacobian = 1;
+  nucleus(report);
+  for (int number = 1; number <= grid_.rings; ++number) ring(number, report);
+  ties();
+  constexpr int steps = 360;
+  for (int i = 0; i < steps; ++i) {
+    const double r = space_.radius(2 * M_PI * i / steps);
+    report.area += 0.5 * r * r * 2 * M_PI / steps;
+  }
+  report.height = report.volume / report.area;
+  return report;
+}
+
+// Moves the endplates of one vertebra by `up` at the bottom and `down` at the top, linear between
+// them and nothing behind the body.
+void compress_body(PlacedBone& bone, double top, double bottom, double back, double down,
+                   double up) {
+  for (std::size_t n = 0; n < bone.nodes.size(); ++n) {
+    Point& p = bone.mesh.nodes[n];
+    const double x = std::clamp((p.x - (back - 3)) / 6, 0.0, 1.0);
+    const double behind = x * x * (3 - 2 * x);
+    const double t = std::clamp((p.z - bottom) / (top - bottom), 0.0, 1.0);
+    p.z += behind * ((1 - t) * up - t * down);
+    bone.nodes[n] = bone.placement(p);
+  }
+}
+
+}  // namespace
+
+double fit_endplates(std::vector<PlacedBone>& bones) {
+  // how far each vertebra's top goes down and its bottom up; between which heights, before what
+  struct Change {
+    double down = 0, up = 0, top = 1e30, bottom = -1e30, back = 0;
+  };
+  std::map<int, Change> changes;
+  for (const DiscRow& row : disc_rows(bones)) {
+    const double missing = row.wanted - DiscSpace(bones, row).mean_height();
+    const double shift = std::clamp(0.5 * missing, 0.0, most_shift);
+    changes[row.upper].up = shift, changes[row.lower].down = shift;
+  }
+  const Table table("anatomy/joints/ligaments.csv");
+  for (int row = 0; row < table.rows(); ++row) {
+    const std::string& name = table.text(row, "name");
+    if (!name.starts_with("PLL_")) continue;
+    for (const char* n : {"1", "2"}) {
+      const int bone = find_bone(bones, table.text(row, std::string("bone") + n), Side::midline);
+      if (bone < 0 || !changes.count(bone)) continue;
+      const Point& scale = bones[std::size_t(bone)].mesh.scale;
+      const double z = scale.z * table.number(row, std::string("z") + n);
+      (n[0] == '1' ? changes[bone].bottom : changes[bone].top) = z;
+      changes[bone].back = scale.x * table.number(row, std::string("x") + n);
+    }
+  }
+  double largest = 0;
+  for (auto& [bone, change] : changes) {
+    // only vertebrae between two discs: C2's dens and the sacrum keep their form
+    if (change.top > 1e29 || change.bottom < -1e29) continue;
+    compress_body(bones[std::size_t(bone)], change.top, change.bottom, change.back, change.down,
+                  change.up);
+    largest = std::max({largest, change.down, change.up});
+  }
+  return largest;
+}
+
+std::vector<DiscReport> add_discs(const std::vector<PlacedBone>& bones, BetweenBones& between) {
+  std::vector<DiscReport> reports;
+  for (const DiscRow& row : disc_rows(bones))
+    reports.push_back(DiscMaker(bones, row, between).make());
+  return reports;
+}
+
+}  // namespace fabrica::body

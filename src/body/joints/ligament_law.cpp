@@ -1,0 +1,37 @@
+#include "body/joints/ligament_law.h"
+
+#include <algorithm>
+
+namespace fabrica::body {
+
+double ligament_force(const LigamentStiffness& law, double elongation) {
+  const double x = elongation - law.slack;
+  if (x <= 0) return 0;
+  if (law.strain1 > 0) {
+    const double bend = law.strain1 * law.length;
+    return law.k1 * std::min(x, bend) + law.k2 * std::max(x - bend, 0.0);
+  }
+  const double s = 0.03 * law.length;
+  return x <= 2 * s ? law.k1 * x * x / (4 * s) : law.k1 * (x - s);
+}
+
+Law ligament_curve(const LigamentStiffness& law, int strands, const std::string& source,
+                   const std::string& flag) {
+  Law curve{"MAT_SPRING_NONLINEAR_ELASTIC", {}, "lcd", {}, source, flag};
+  std::vector<double> x{-1000, 0};
+  if (law.strain1 > 0) {
+    x.push_back(law.strain1 * law.length);
+  } else {
+    for (int i = 1; i <= 4; ++i) x.push_back(0.25 * i * 0.06 * law.length);
+  }
+  x.push_back(x.back() + 1000);
+  for (double at : x) {
+    const double elongation = at + std::max(law.slack, 0.0);
+    curve.curve.emplace_back(elongation, ligament_force(law, elongation) / strands);
+  }
+  curve.curve.front() = {-1000, 0};
+  if (law.slack > 0) curve.curve.insert(curve.curve.begin() + 1, {0, 0});
+  return curve;
+}
+
+}  // namespace fabrica::body

@@ -1,0 +1,179 @@
+#include "body/joints/ligaments.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <set>
+
+#include "body/joints/bone_surface.h"
+#include "body/joints/piece_builder.h"
+#include "body/tables.h"
+
+namespace fabrica::body {
+
+namespace {
+
+constexpr double farthest = 25;  // [mm] of an end from its bone
+
+struct End {
+  int bone;
+  Point place;  // global, of the table
+};
+
+class LigamentMaker {
+ public:
+  LigamentMaker(const std::vector<PlacedBone>& bones, BetweenBones& between)
+      : bones_(bones), between_(between), surfaces_(bones.size()) {}
+
+  void add(const Table& table, int row, Side side);
+  std::vector<LigamentReport> reports;
+
+ private:
+  const BoneSurface& surface(int bone) {
+    auto& kept = surfaces_[std::size_t(bone)];
+    const PlacedBone& b = bones_[std::size_t(bone)];
+    if (!kept) kept = std::make_unique<BoneSurface>(b.nodes, b.mesh.surface);
+    return *kept;
+  }
+  int bone_of(std::string name, Side side) const {
+    if (name.ends_with("_L")) {
+      name.resize(name.size() - 2);
+      side = Side::left;
+    }
+    const int sided = find_bone(bones_, name, side);
+    return sided >= 0 ? sided : find_bone(bones_, name, Side::midline);
+  }
+  End end(const Table& table, int row, Side side, const char* number) const;
+
+  const std::vector<PlacedBone>& bones_;
+  BetweenBones& between_;
+  std::vector<std::unique_ptr<BoneSurface>> surfaces_;
+};
+
+End LigamentMaker::end(const Table& table, int row, Side side, const char* number) const {
+  const std::string n = number;
+  const int bone = bone_of(table.text(row, "bone" + n), side);
+  if (bone < 0) return {-1, {}};
+  const PlacedBone& b = bones_[std::size_t(bone)];
+  Point p{table.number(row, "x" + n), table.number(row, "y" + n), table.number(row, "z" + n)};
+  if (side == Side::left) p.y = -p.y;
+  for (int i = 0; i < 3; ++i) p[i] *= b.mesh.scale[i];
+  return {bone, b.placement(p)};
+}
+
+LigamentStiffness stiffness_of(const Table& table, int row) {
+  LigamentStiffness law;
+  law.length = table.number(row, "length");
+  law.k1 = 1e-3 * table.number(row, "k1");
+  if (!table.text(row, "strain1").empty()) {
+    law.strain1 = table.number(row, "strain1");
+    law.k2 = 1e-3 * table.number(row, "k2");
+  }
+  return law;
+}
+
+// places of n strands across the ligament
+std::vector<Point> spread(const Point& centre, const Point& lateral, int n, double breadth) {
+  std::vector<Point> places;
+  for (int i = 0; i < n; ++i)
+    places.push_back(centre + (n == 1 ? 0.0 : breadth * (i / (n - 1.0) - 0.5)) * lateral);
+  return places;
+}
+
+// strands of one piece between the surface nodes nearest to the given places
+void tie_strands(PieceBuilder& builder, const BoneSurface& a, const BoneSurface& b, End from,
+                 End to, const std::vector<Point>& starts, const std::vector<Point>& ends) {
+  std::set<std::pair<int, int>> used;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    double da, db;
+    const int na = a.nearest_node(starts[i], da), nb = b.nearest_node(ends[i], db);
+    if (!used.insert({na, nb}).second) {
+      // two strands on one pair of nodes: one of double force
+      for (std::size_t k = 0; k < builder.piece.lines.size(); ++k)
+        if (builder.piece.nodes[std::size_t(builder.piece.lines[k][0])].node == na &&
+            builder.piece.nodes[std::size_t(builder.piece.lines[k][1])].node == nb)
+          builder.piece.line_scale[k] += 1;
+      continue;
+    }
+    builder.piece.lines.push_back({builder.of_bone(from.bone, na), builder.of_bone(to.bone, nb)});
+    builder.piece.line_scale.push_back(1);
+  }
+}
+
+void LigamentMaker::add(const Table& table, int row, Side side) {
+  const End from = end(table, row, side, "1"), to = end(table, row, side, "2");
+  if (from.bone < 0 || to.bone < 0) return;
+  const PlacedBone &bone_a = bones_[std::size_t(from.bone)], &bone_b = bones_[std::size_t(to.bone)];
+  LigamentStiffness law = stiffness_of(table, row);
+  const int strands = int(table.number(row, "strands"));
+
+  // across the ligament, along the bone it starts from
+  const Point along = to.place - from.place;
+  double start_distance, end_distance;
+  const int start_node = surface(from.bone).nearest_node(from.place, start_distance);
+  surface(to.bone).nearest_node(to.place, end_distance);
+  const Point& normal = surface(from.bone).node_normal(start_node);
+  Point lateral = cross(norm(along) > 1 ? along : Point{0, 0, 1}, normal);
+  lateral = norm(lateral) > 1e-6 ? (1 / norm(lateral)) * lateral : Point{0, 1, 0};
+  const double breadth = table.number(row, "spread") * bone_a.mesh.scale.y;
+
+  PieceBuilder builder(bones_);
+  LigamentReport report;
+  const std::string side_name = name_of(table.text(row, "side") == "M" ? Side::midline : side);
+  report.name = fmt::format("{}.{}.{}", name_of(bone_a.region), side_name, table.text(row, "name"));
+  report.distance = std::max(start_distance, end_distance);
+  tie_strands(builder, surface(from.bone), surface(to.bone), from, to,
+              spread(from.place, lateral, strands, breadth),
+              spread(to.place, lateral, strands, breadth));
+  if (report.distance > farthest)
+    table.fail(row, fmt::format("an end lies {:.1f} mm from its bone, at most {} is possible",
+                                report.distance, farthest));
+  const double size = (bone_a.mesh.scale.x + bone_a.mesh.scale.y + bone_a.mesh.scale.z) / 3;
+  report.reference = law.length * size;
+  report.length = norm(along);
+  law.slack = std::max(report.reference - std::max(report.length, 4.0), 0.0);
+  law.length = report.reference;
+  report.strands = int(builder.piece.lines.size());
+  report.slack = law.slack, report.stiffness = law.k1;
+
+  builder.piece.name = report.name;
+  builder.piece.region = bone_a.region;
+  builder.piece.kind = PieceKind::spring;
+  builder.piece.law =
+      ligament_curve(law, strands, table.text(row, "source"), table.text(row, "confidence"));
+  builder.piece.bone_a = part_name(bone_a, ""), builder.piece.bone_b = part_name(bone_b, "");
+  builder.piece.source = table.text(row, "source");
+  between_.pieces.push_back(std::move(builder.piece));
+  reports.push_back(report);
+}
+
+}  // namespace
+
+std::vector<LigamentReport> add_ligaments(const std::vector<PlacedBone>& bones,
+                                          BetweenBones& between) {
+  const Table table("anatomy/joints/ligaments.csv");
+  LigamentMaker maker(bones, between);
+  for (int row = 0; row < table.rows(); ++row) {
+    if (table.text(row, "attach") == "facet") continue;  // made with the joint
+    maker.add(table, row, Side::right);
+    if (table.text(row, "side") == "R") maker.add(table, row, Side::left);
+  }
+  return std::move(maker.reports);
+}
+
+CapsuleLaw facet_capsule(const std::string& upper, const std::string& lower) {
+  const Table table("anatomy/joints/ligaments.csv");
+  const std::string name = "CL_" + upper + "_" + (lower == "sacrum" ? "S1" : lower);
+  const std::string instead = upper == "L5" ? "CL_L4_L5" : "CL_C3_C4";
+  int found = -1;
+  for (int row = 0; row < table.rows(); ++row) {
+    if (table.text(row, "name") == name) found = row;
+    if (found < 0 && table.text(row, "name") == instead) found = row;
+  }
+  if (found < 0) throw BodyError("ligaments.csv: no facet capsule " + name);
+  return {stiffness_of(table, found), int(table.number(found, "strands")),
+          table.text(found, "source"), table.text(found, "confidence")};
+}
+
+}  // namespace fabrica::body
