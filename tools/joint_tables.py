@@ -78,7 +78,7 @@ def ligaments(folder):
         ends = ["0.0" if float(v) == 0 else v for v in ends]
         attach = "facet" if row["name"].startswith("CL_") else "points"
         if row["name"] in ("achilles_tendon", "quadriceps_tendon_insertion"):
-            k1, source = 10.0, "tendon in series with a passive muscle; estimated"
+            attach, k1, source = "muscle", 10.0, "tendon in series with a passive muscle; estimated"
         if row["name"] == "inguinal":
             source += "; both ends on the hip bone"
         confidence = "read" if source == LUMBAR_SOURCE else row["confidence"]

@@ -34,6 +34,7 @@ struct ClearanceReport {
   std::string largest_shift_bone;
   double least_gap = 0;  // [mm] that is left between any two bones
   std::string least_gap_pair;
+  std::vector<std::string> left;     // pairs that still overlap, joined ones apart
   double least_scaled_jacobian = 1;  // of the bricks of the bones that moved
   std::string least_scaled_jacobian_bone;
 };

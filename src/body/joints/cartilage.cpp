@@ -43,7 +43,7 @@ class ArticulationMaker {
                                               double& gap_left);
   void sliding(const Articulation& joint, const Patch& a, const Patch& b,
                ArticulationReport& report);
-  void joined(const Articulation& joint, const Patch& a, const Patch& b);
+  void joined(const Articulation& joint, ArticulationReport& report);
   void symphysis(const Articulation& joint, const Patch& a);
   void capsule(const Articulation& joint, const Patch& a, const Patch& b);
   std::vector<int> nodes_of(int bone, const Patch& patch) const;
@@ -56,6 +56,7 @@ class ArticulationMaker {
   const std::vector<PlacedBone>& bones_;
   BetweenBones& between_;
   std::vector<std::unique_ptr<BoneSurface>> surfaces_;
+  std::set<std::pair<int, int>> tied_;  // bone, node
 };
 
 const BoneSurface& ArticulationMaker::surface(int index) {
@@ -124,12 +125,17 @@ std::vector<std::array<PieceNode, 4>> ArticulationMaker::layer(const Articulatio
   }
   PieceBuilder builder(bones_);
   std::map<int, int> top;
+  std::set<int> crowded;  // nodes without room for two layers: no cartilage, no contact there
   for (auto& [node, normal] : normals) {
     const Point& p = here.nodes[std::size_t(node)];
     normal = (1 / norm(normal)) * normal;
     const SurfacePoint there = surface(other).nearest(p, 4 * joint.reach);
     const double distance = there.quad < 0 ? 2 * joint.reach : there.distance;
     const double room = 0.5 * (distance - contact_gap);
+    if (room < thinnest) {
+      crowded.insert(node);
+      continue;
+    }
     const double thickness = std::clamp(room, thinnest, cartilage);
     gap = std::min(gap, distance - 2 * thickness);
     top[node] = builder.own(p + thickness * normal);
@@ -137,6 +143,7 @@ std::vector<std::array<PieceNode, 4>> ArticulationMaker::layer(const Articulatio
   for (int q : patch.quads) {
     const auto& s = here.mesh.surface[std::size_t(q)];
     std::array<int, 8> brick;
+    if (std::any_of(s.begin(), s.end(), [&](int n) { return crowded.count(n) > 0; })) continue;
     for (std::size_t i = 0; i < 4; ++i) {
       brick[i] = builder.of_bone(index, s[i]);
       brick[i + 4] = top[s[i]];
@@ -176,11 +183,36 @@ void ArticulationMaker::sliding(const Articulation& joint, const Patch& a, const
   capsule(joint, a, b);
 }
 
-void ArticulationMaker::joined(const Articulation& joint, const Patch& a, const Patch& b) {
+// The nodes of a that lie nearest to b (within 3 mm of the nearest, at least six) follow the faces
+// of b that lie nearest to them.
+void ArticulationMaker::joined(const Articulation& joint, ArticulationReport& report) {
+  std::vector<std::pair<double, int>> near;
+  for (int node : surface(joint.a).nodes()) {
+    const SurfacePoint there = surface(joint.b).nearest(bone(joint.a).nodes[std::size_t(node)], 30);
+    if (there.quad >= 0) near.emplace_back(there.distance, node);
+  }
+  std::sort(near.begin(), near.end());
   Tie tie;
   tie.name = name(joint);
-  for (int node : nodes_of(joint.a, a)) tie.a.push_back(bone_node(bones_, joint.a, node));
-  for (int q : b.quads) tie.b.quads.push_back(quad_of(joint.b, q));
+  std::set<int> around;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    const auto [distance, node] = near[i];
+    if (i >= 6 && distance > near.front().first + 3) break;
+    if (!tied_.insert({joint.a, node}).second) continue;  // a node follows one surface
+    tie.a.push_back(bone_node(bones_, joint.a, node));
+    const int quad = surface(joint.b).nearest(bone(joint.a).nodes[std::size_t(node)], 30).quad;
+    for (int n : bone(joint.b).mesh.surface[std::size_t(quad)]) around.insert(n);
+  }
+  const auto& quads = bone(joint.b).mesh.surface;
+  for (std::size_t q = 0; q < quads.size(); ++q)
+    if (std::any_of(quads[q].begin(), quads[q].end(), [&](int n) { return around.count(n) > 0; }))
+      tie.b.quads.push_back(quad_of(joint.b, int(q)));
+  report.faces_a = int(tie.a.size()), report.faces_b = int(tie.b.quads.size());
+  if (tie.a.empty()) {
+    report.omitted = "no nodes within 30 mm";
+    return;
+  }
+  report.gap = near.front().first;
   between_.ties.push_back(std::move(tie));
 }
 
@@ -273,6 +305,10 @@ void ArticulationMaker::capsule(const Articulation& joint, const Patch& a, const
 ArticulationReport ArticulationMaker::add(const Articulation& joint) {
   ArticulationReport report;
   report.name = name(joint);
+  if (joint.kind == ArticulationKind::joined) {
+    joined(joint, report);
+    return report;
+  }
   // bones that stand farther apart than the table says are looked for farther
   Patch a, b;
   for (double factor : {1.0, 1.5, 2.0, 3.0}) {
@@ -287,9 +323,7 @@ ArticulationReport ArticulationMaker::add(const Articulation& joint) {
     report.omitted = fmt::format("no faces look at each other within {:g} mm", report.reach);
     return report;
   }
-  if (joint.kind == ArticulationKind::joined)
-    joined(joint, a, b);
-  else if (joint.kind == ArticulationKind::symphysis)
+  if (joint.kind == ArticulationKind::symphysis)
     symphysis(joint, a);
   else
     sliding(joint, a, b, report);

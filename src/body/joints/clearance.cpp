@@ -70,7 +70,7 @@ void Movable::carry_inside() {
 }
 
 bool Movable::move() {
-  bool any = false;
+  bool any = false, inside = false;
   for (const Point& s : shift_) any = any || dot(s, s) > 0;
   if (!any) return false;
   if (start_.empty()) {
@@ -79,7 +79,9 @@ bool Movable::move() {
     on_surface_.assign(bone.nodes.size(), 0);
     for (int node : surface->nodes()) on_surface_[std::size_t(node)] = 1;
   }
-  carry_inside();
+  for (std::size_t n = 0; n < shift_.size(); ++n)
+    inside = inside || (!on_surface_[n] && dot(shift_[n], shift_[n]) > 0);
+  if (!inside) carry_inside();
   const std::vector<Point> before = bone.nodes;
   for (std::size_t n = 0; n < shift_.size(); ++n) bone.nodes[n] += shift_[n];
   // bricks that would get too thin: their nodes stay where they were
@@ -107,6 +109,59 @@ struct Pair {
   double gap;  // wanted
 };
 
+// how far two bones are in one another at a joint
+struct Overlap {
+  double depth = 0;                       // [mm] missing to the wanted gap
+  Point place{0, 0, 0}, normal{0, 0, 0};  // from b to a, unit
+};
+
+void collect(const Movable& a, const Movable& b, double gap, double sign, Overlap& overlap,
+             double& weight) {
+  for (int node : a.surface->nodes()) {
+    const Point& p = a.bone.nodes[std::size_t(node)];
+    const SurfacePoint there = b.surface->nearest(p, 12);
+    if (there.quad < 0 || there.distance >= gap) continue;
+    if (there.distance < 0 && dot(a.surface->node_normal(node), there.normal) > 0.3) continue;
+    const double depth = gap - there.distance;
+    overlap.depth = std::max(overlap.depth, depth);
+    overlap.normal += (sign * depth) * there.normal;
+    overlap.place += depth * p;
+    weight += depth;
+  }
+}
+
+// Moves the end of a bone by a shift that fades over the distance L from the joint:
+// u = shift (1 - (r/L)^2)^2; bricks are pressed together over L instead of dented.
+void press(Movable& m, const Point& place, const Point& shift) {
+  Point size = m.surface->high - m.surface->low;
+  const double L = std::min(30.0, 0.7 * std::max({size.x, size.y, size.z}));
+  for (std::size_t n = 0; n < m.bone.nodes.size(); ++n) {
+    const double r = norm(m.bone.nodes[n] - place) / L;
+    if (r < 1) m.wish(int(n), ((1 - r * r) * (1 - r * r)) * shift);
+  }
+  m.move();
+}
+
+// Ends of bones that reach into each other, first the joints as a whole. Of bones that are joined
+// only the first gives way.
+void press_ends(std::vector<Movable>& bones, const std::vector<Articulation>& joints) {
+  for (int pass = 0; pass < 3; ++pass)
+    for (const Articulation& joint : joints) {
+      Movable &a = bones[std::size_t(joint.a)], &b = bones[std::size_t(joint.b)];
+      const double gap = std::min(wanted_gap(joint), 0.3);
+      Overlap overlap;
+      double weight = 0;
+      collect(a, b, gap, 1, overlap, weight);
+      collect(b, a, gap, -1, overlap, weight);
+      const double length = norm(overlap.normal);
+      if (overlap.depth < 0.15 || length == 0) continue;
+      const Point normal = (1 / length) * overlap.normal, place = (1 / weight) * overlap.place;
+      const double share = joint.kind == ArticulationKind::joined ? 1 : 0.5;
+      press(a, place, share * overlap.depth * normal);
+      if (share < 1) press(b, place, (-share * overlap.depth) * normal);
+    }
+}
+
 bool boxes_meet(const BoneSurface& a, const BoneSurface& b, double gap) {
   for (int i = 0; i < 3; ++i)
     if (a.low[i] > b.high[i] + gap || b.low[i] > a.high[i] + gap) return false;
@@ -117,13 +172,15 @@ std::vector<Pair> near_pairs(const std::vector<Movable>& bones,
                              const std::vector<Articulation>& joints) {
   std::map<std::pair<int, int>, double> wanted;
   for (const Articulation& joint : joints)
-    wanted[std::minmax(joint.a, joint.b)] = wanted_gap(joint);
+    wanted[std::minmax(joint.a, joint.b)] =
+        joint.kind == ArticulationKind::joined ? -1 : wanted_gap(joint);  // ties bridge the rest
   std::vector<Pair> pairs;
   for (int a = 0; a < int(bones.size()); ++a)
     for (int b = a + 1; b < int(bones.size()); ++b) {
       const auto joint = wanted.find({a, b});
       const double gap = joint == wanted.end() ? least_gap : joint->second;
-      if (boxes_meet(*bones[std::size_t(a)].surface, *bones[std::size_t(b)].surface, gap))
+      if (gap > 0 &&
+          boxes_meet(*bones[std::size_t(a)].surface, *bones[std::size_t(b)].surface, gap))
         pairs.push_back({a, b, gap});
     }
   return pairs;
@@ -153,6 +210,7 @@ ClearanceReport clear_bones(std::vector<PlacedBone>& bones) {
   std::vector<Movable> movable;
   movable.reserve(bones.size());
   for (PlacedBone& bone : bones) movable.emplace_back(bone);
+  press_ends(movable, joints);
   const std::vector<Pair> pairs = near_pairs(movable, joints);
 
   ClearanceReport report;
@@ -165,6 +223,8 @@ ClearanceReport clear_bones(std::vector<PlacedBone>& bones) {
         report.least_gap = gap;
         report.least_gap_pair = part_name(a.bone, "") + " " + part_name(b.bone, "");
       }
+      if (pass == passes && gap < 0)
+        report.left.push_back(part_name(a.bone, "") + " " + part_name(b.bone, ""));
     }
     if (pass == passes) break;
     bool moved = false;

@@ -78,21 +78,13 @@ class DiscMaker {
   std::vector<PieceNode> top_, bottom_;
 };
 
-// Nodes of a line of the disc from the lower to the upper endplate. Where the rim misses an
-// endplate the line is taken a little farther in.
+// nodes of a line of the disc from the lower to the upper endplate
 std::vector<Point> DiscMaker::points(double forward, double left) const {
-  std::optional<DiscLine> at;
-  double factor = 1;
-  for (; !at && factor > 0.5; factor -= 0.02) at = space_.line(factor * forward, factor * left);
-  if (!at)
-    throw BodyError(
-        fmt::format("disc {}: no endplates face each other {:.1f} mm ahead, {:.1f} mm "
-                    "left of its middle",
-                    row_.name, forward, left));
+  const auto [lower, upper] = space_.ends(forward, left);
   std::vector<Point> line;
   for (int k = 0; k <= grid_.layers; ++k) {
     const double t = double(k) / grid_.layers;
-    line.push_back((1 - t) * at->lower.point + t * at->upper.point);
+    line.push_back((1 - t) * lower + t * upper);
   }
   return line;
 }
@@ -242,7 +234,7 @@ void DiscMaker::ties() {
                            above ? "upper" : "lower");
     tie.a = above ? top_ : bottom_;
     for (const PieceNode& n : tie.a) {
-      const SurfacePoint at = surface.nearest(n.x, 2);
+      const SurfacePoint at = surface.nearest(n.x, 6);
       if (at.quad < 0) continue;
       for (int corner : bone.mesh.surface[std::size_t(at.quad)]) nodes.insert(corner);
     }

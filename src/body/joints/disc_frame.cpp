@@ -64,67 +64,131 @@ DiscFrame disc_frame(const std::vector<PlacedBone>& bones, const DiscRow& row) {
 
 DiscSpace::DiscSpace(const std::vector<PlacedBone>& bones, const DiscRow& row)
     : frame_(disc_frame(bones, row)),
-      row_(row),
       upper_(bones[std::size_t(row.upper)].nodes, bones[std::size_t(row.upper)].mesh.surface),
       lower_(bones[std::size_t(row.lower)].nodes, bones[std::size_t(row.lower)].mesh.surface) {
-  // the ellipse, drawn in until both endplates are met and the gap is that of a disc
-  const double middle = std::max(mean_height(), 1.0);
+  draw_outline(row);
+  take_heights();
+}
+
+std::optional<DiscLine> DiscSpace::ray(double forward, double left) const {
+  constexpr double back = 6, reach = 26;  // rays start inside the other bone
+  constexpr double wall = 0.15;           // cosine: steeper faces are no endplate
+  const Point p = frame_.centre + forward * frame_.forward + left * frame_.left;
+  const SurfacePoint up = upper_.hit(p - back * frame_.normal, frame_.normal, reach);
+  const SurfacePoint down = lower_.hit(p + back * frame_.normal, -frame_.normal, reach);
+  if (up.quad < 0 || down.quad < 0) return {};
+  if (dot(up.normal, frame_.normal) > -wall || dot(down.normal, frame_.normal) < wall) return {};
+  return DiscLine{back - down.distance, up.distance - back};
+}
+
+// the ellipse, drawn in to 0.75 of it at most until both endplates are met and the gap is that of a
+// disc; then the mean of neighbours
+void DiscSpace::draw_outline(const DiscRow& row) {
+  double middle = 0;
+  int count = 0;
+  for (int i = 0; i < directions; i += 4)
+    for (const double rho : {0.2, 0.5}) {
+      const double phi = 2 * M_PI * i / directions;
+      const auto found =
+          ray(0.5 * rho * row.depth * std::cos(phi), 0.5 * rho * row.width * std::sin(phi));
+      if (found) middle += found->height(), ++count;
+    }
+  middle = count > 0 ? std::max(middle / count, 1.0) : row.height;
+
   std::vector<double> found(directions);
   for (int i = 0; i < directions; ++i) {
     const double phi = 2 * M_PI * i / directions, c = std::cos(phi), s = std::sin(phi);
     double r = 1 / std::hypot(c / (0.5 * row.depth), s / (0.5 * row.width));
-    for (const double least = 0.5 * r; r > least; r -= 0.3) {
-      const auto at = line(r * c, r * s);
-      if (at && at->height < 2.2 * middle && at->height > 0.3 * middle) break;
+    for (const double least = 0.75 * r; r > least; r -= 0.3) {
+      const auto line = ray(r * c, r * s);
+      if (line && line->height() < 2.2 * middle && line->height() > 0.3 * middle) break;
     }
     found[std::size_t(i)] = r;
   }
-  // a smooth outline: the least of the neighbours, then their mean
-  const auto at = [&](const std::vector<double>& v, int i) {
-    return v[std::size_t((i + directions) % directions)];
-  };
-  std::vector<double> least(directions);
-  for (int i = 0; i < directions; ++i)
-    least[std::size_t(i)] = std::min({at(found, i - 1), at(found, i), at(found, i + 1)});
   radius_.resize(directions);
   for (int i = 0; i < directions; ++i)
-    radius_[std::size_t(i)] =
-        0.25 * at(least, i - 1) + 0.5 * at(least, i) + 0.25 * at(least, i + 1);
+    radius_[std::size_t(i)] = 0.25 * found[std::size_t((i + directions - 1) % directions)] +
+                              0.5 * found[std::size_t(i)] +
+                              0.25 * found[std::size_t((i + 1) % directions)];
 }
 
-std::optional<DiscLine> DiscSpace::line(double forward, double left) const {
-  constexpr double back = 6, reach = 26;  // rays start inside the other bone
-  const Point p = frame_.centre + forward * frame_.forward + left * frame_.left;
-  DiscLine found;
-  found.upper = upper_.hit(p - back * frame_.normal, frame_.normal, reach);
-  found.lower = lower_.hit(p + back * frame_.normal, -frame_.normal, reach);
-  if (found.upper.quad < 0 || found.lower.quad < 0) return {};
-  if (dot(found.upper.normal, frame_.normal) > -0.4 || dot(found.lower.normal, frame_.normal) < 0.4)
-    return {};
-  found.height = dot(found.upper.point - found.lower.point, frame_.normal);
-  return found;
+void DiscSpace::take_heights() {
+  heights_.resize(std::size_t(rings + 1) * directions);
+  std::vector<char> known(heights_.size(), 0);
+  double sum = 0;
+  int count = 0;
+  for (int k = 0; k <= rings; ++k)
+    for (int i = 0; i < directions; ++i) {
+      const double phi = 2 * M_PI * i / directions;
+      const double r = radius_[std::size_t(i)] * k / rings;
+      const auto line = ray(r * std::cos(phi), r * std::sin(phi));
+      if (!line) continue;
+      at(k, i) = *line, known[std::size_t(k * directions + i)] = 1;
+      sum += line->height(), ++count;
+    }
+  if (count == 0) throw BodyError("a disc finds no endplates that face each other");
+  const double least = 0.4 * sum / count;
+  // unknown: of the ring within; the innermost: the mean
+  for (int k = 0; k <= rings; ++k)
+    for (int i = 0; i < directions; ++i)
+      if (!known[std::size_t(k * directions + i)])
+        at(k, i) = k > 0 ? at(k - 1, i) : DiscLine{-0.5 * sum / count, 0.5 * sum / count};
+  for (int pass = 0; pass < 6; ++pass) {
+    const std::vector<DiscLine> old = heights_;
+    const auto before = [&](int k, int i) {
+      return old[std::size_t(k * directions + (i + directions) % directions)];
+    };
+    for (int k = 0; k <= rings; ++k)
+      for (int i = 0; i < directions; ++i) {
+        // of a line at the rim: no ring beyond; in the middle: across
+        const DiscLine in = k > 0 ? before(k - 1, i) : before(1, i + directions / 2),
+                       out = before(std::min(k + 1, rings), i), a = before(k, i - 1),
+                       b = before(k, i + 1), here = before(k, i);
+        at(k, i).lower = 0.5 * here.lower + 0.125 * (in.lower + out.lower + a.lower + b.lower);
+        at(k, i).upper = 0.5 * here.upper + 0.125 * (in.upper + out.upper + a.upper + b.upper);
+      }
+    DiscLine middle;
+    for (int i = 0; i < directions; ++i)
+      middle.lower += at(0, i).lower / directions, middle.upper += at(0, i).upper / directions;
+    for (int i = 0; i < directions; ++i) at(0, i) = middle;
+  }
+  for (DiscLine& line : heights_) {
+    const double short_by = std::max(least - line.height(), 0.0);
+    line.lower -= 0.5 * short_by, line.upper += 0.5 * short_by;
+  }
 }
 
 double DiscSpace::radius(double phi) const {
-  const double at = (phi < 0 ? phi + 2 * M_PI : phi) / (2 * M_PI) * directions;
-  const int i = int(at);
-  const double t = at - i;
+  const double position = (phi < 0 ? phi + 2 * M_PI : phi) / (2 * M_PI) * directions;
+  const int i = int(position);
+  const double t = position - i;
   return (1 - t) * radius_[std::size_t(i % directions)] +
          t * radius_[std::size_t((i + 1) % directions)];
 }
 
+std::array<Point, 2> DiscSpace::ends(double forward, double left) const {
+  const double r = std::hypot(forward, left), angle = std::atan2(left, forward);
+  const double phi = angle < 0 ? angle + 2 * M_PI : angle;
+  const double along = std::min(r / radius(phi), 1.0) * rings,
+               around = phi / (2 * M_PI) * directions;
+  const int k = std::min(int(along), rings - 1), i = int(around);
+  const double s = along - k, t = around - i;
+  const auto mix = [&](double DiscLine::*end) {
+    return (1 - s) * ((1 - t) * (at(k, i).*end) + t * (at(k, i + 1).*end)) +
+           s * ((1 - t) * (at(k + 1, i).*end) + t * (at(k + 1, i + 1).*end));
+  };
+  const Point p = frame_.centre + forward * frame_.forward + left * frame_.left;
+  return {p + mix(&DiscLine::lower) * frame_.normal, p + mix(&DiscLine::upper) * frame_.normal};
+}
+
 double DiscSpace::mean_height() const {
-  // over rho = 1/8, 3/8, 5/8, 7/8 of the ellipse, weighted by area
   double sum = 0, weight = 0;
-  for (int k = 0; k < 4; ++k)
-    for (int i = 0; i < 16; ++i) {
-      const double rho = (k + 0.5) / 4, phi = 2 * M_PI * i / 16;
-      const auto at =
-          line(0.45 * rho * row_.depth * std::cos(phi), 0.45 * rho * row_.width * std::sin(phi));
-      if (!at) continue;
-      sum += rho * at->height, weight += rho;
+  for (int k = 1; k <= rings; ++k)
+    for (int i = 0; i < directions; ++i) {
+      const double area = k * radius_[std::size_t(i)] * radius_[std::size_t(i)];
+      sum += area * at(k, i).height(), weight += area;
     }
-  return weight > 0 ? sum / weight : 0;
+  return sum / weight;
 }
 
 }  // namespace fabrica::body

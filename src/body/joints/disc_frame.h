@@ -1,5 +1,6 @@
 #pragma once
 // Where a disc lies in the posed spine, and the section it fills.
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,26 +26,40 @@ DiscFrame disc_frame(const std::vector<PlacedBone>& bones, const DiscRow& row);
 
 // the ends of the disc on a line along the normal through a point of the plane
 struct DiscLine {
-  SurfacePoint upper, lower;
-  double height = 0;
+  double lower = 0, upper = 0;  // [mm] along the normal, from the plane
+  double height() const { return upper - lower; }
 };
+
+// The room between two endplates. Their heights are taken on rays, smoothed over the section (the
+// faces of coarse bones are steps) and carried on where a rim is missing.
 class DiscSpace {
  public:
   DiscSpace(const std::vector<PlacedBone>& bones, const DiscRow& row);
-  // nothing where a ray misses an endplate or meets a wall
-  std::optional<DiscLine> line(double forward, double left) const;
   // [mm] of the section's edge in direction phi, from forward towards left
   double radius(double phi) const;
+  // lower and upper end of the disc at a place of the section [mm]
+  std::array<Point, 2> ends(double forward, double left) const;
   const DiscFrame& frame() const { return frame_; }
   // [mm] mean over the section
   double mean_height() const;
 
  private:
-  static constexpr int directions = 48;
+  static constexpr int directions = 48, rings = 8;
+  // nothing where a ray misses an endplate or meets a wall
+  std::optional<DiscLine> ray(double forward, double left) const;
+  void draw_outline(const DiscRow& row);
+  void take_heights();
+  DiscLine& at(int ring, int direction) {
+    return heights_[std::size_t(ring * directions + (direction + directions) % directions)];
+  }
+  const DiscLine& at(int ring, int direction) const {
+    return heights_[std::size_t(ring * directions + (direction + directions) % directions)];
+  }
+
   DiscFrame frame_;
-  DiscRow row_;
   BoneSurface upper_, lower_;
   std::vector<double> radius_;
+  std::vector<DiscLine> heights_;  // ring 0 is the middle
 };
 
 }  // namespace fabrica::body
