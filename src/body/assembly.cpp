@@ -48,6 +48,7 @@ class Assembly {
 
  private:
   static constexpr Id solid_section = 1, bone_shell_section = 2;
+  static constexpr double tie_reach = 30;  // [mm]
 
   RegionIds& ids(Region region) { return ids_[std::size_t(region)]; }
   Card& titled(const char* keyword, const std::string& title) {
@@ -281,6 +282,8 @@ class Assembly {
     c.options = {"ID"};
     c.set("cid", double(++last_contact_)).set("heading", tie.name);
     c.set("ssid", double(nodes)).set("msid", double(segments)).set("sstyp", 4).set("mstyp", 0);
+    c.set("sst", -tie_reach)
+        .set("mst", -tie_reach);  // negative: the distance within which nodes are tied
   }
 
   // rows of eight ids

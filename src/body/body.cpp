@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "body/joints/join_bones.h"
 #include "body/tables.h"
 
 namespace fabrica::body {
@@ -97,6 +98,7 @@ Body build_body(const BodyOptions& options) {
       body.bones.push_back(place(mesh, Side::midline, frame, body.skeleton));
     }
   }
+  if (options.joints) body.between = join_bones(body.bones, body.joined);
   return body;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "body/joints/join_bones.h"
 #include "body/piece.h"
 #include "body/placed_bone.h"
 #include "body/skeleton.h"
@@ -27,6 +28,7 @@ struct Body {
   Resolution resolution;
   std::vector<PlacedBone> bones;  // head to foot; of pairs right before left
   BetweenBones between;
+  JoinReport joined;  // what was moved and made between the bones
 };
 
 // Meshes and places all bones and makes what lies between them. Throws BodyError (bone, stage,

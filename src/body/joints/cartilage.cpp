@@ -124,8 +124,9 @@ std::vector<std::array<PieceNode, 4>> ArticulationMaker::layer(const Articulatio
     for (int corner : s) normals.try_emplace(corner, Point{0, 0, 0}).first->second += n;
   }
   PieceBuilder builder(bones_);
-  std::map<int, int> top;
-  std::set<int> crowded;  // nodes without room for two layers: no cartilage, no contact there
+  std::map<int, Point> top;
+  std::map<int, int> top_node;  // made when a brick needs it
+  std::set<int> crowded;        // nodes without room for two layers: no cartilage, no contact there
   for (auto& [node, normal] : normals) {
     const Point& p = here.nodes[std::size_t(node)];
     normal = (1 / norm(normal)) * normal;
@@ -138,19 +139,21 @@ std::vector<std::array<PieceNode, 4>> ArticulationMaker::layer(const Articulatio
     }
     const double thickness = std::clamp(room, thinnest, cartilage);
     gap = std::min(gap, distance - 2 * thickness);
-    top[node] = builder.own(p + thickness * normal);
+    top[node] = p + thickness * normal;
   }
   for (int q : patch.quads) {
     const auto& s = here.mesh.surface[std::size_t(q)];
-    std::array<int, 8> brick;
     if (std::any_of(s.begin(), s.end(), [&](int n) { return crowded.count(n) > 0; })) continue;
-    for (std::size_t i = 0; i < 4; ++i) {
-      brick[i] = builder.of_bone(index, s[i]);
-      brick[i + 4] = top[s[i]];
-    }
     Corners corners;
-    for (std::size_t i = 0; i < 8; ++i) corners[i] = builder.at(brick[i]);
+    for (std::size_t i = 0; i < 4; ++i)
+      corners[i] = here.nodes[std::size_t(s[i])], corners[i + 4] = top[s[i]];
     if (scaled_jacobian(corners) < 0.2) continue;  // folds at a sharp rim: the bone stays bare
+    std::array<int, 8> brick;
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (!top_node.count(s[i])) top_node[s[i]] = builder.own(top[s[i]]);
+      brick[i] = builder.of_bone(index, s[i]);
+      brick[i + 4] = top_node[s[i]];
+    }
     builder.piece.bricks.push_back(brick);
   }
   const int number = int(between_.pieces.size());

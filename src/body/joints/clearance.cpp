@@ -14,6 +14,7 @@ namespace {
 constexpr double least_gap = 0.2;  // [mm] where no joint is
 constexpr double deepest = 5;      // [mm] deeper is another side of the bone, not penetration
 constexpr double least_jacobian = 0.25;
+constexpr double least_width = 0.85;  // of a face, of what it was: the step of shells depends on it
 constexpr int passes = 14;
 
 // neighbours of each node along the edges of the bricks
@@ -28,6 +29,13 @@ std::vector<std::vector<int>> edges_of(const BoneMesh& mesh) {
     list.erase(std::unique(list.begin(), list.end()), list.end());
   }
   return neighbours;
+}
+
+// area over longest diagonal [mm]
+double width(const std::vector<Point>& nodes, const Quad& quad) {
+  const Point d1 = nodes[std::size_t(quad[2])] - nodes[std::size_t(quad[0])],
+              d2 = nodes[std::size_t(quad[3])] - nodes[std::size_t(quad[1])];
+  return 0.5 * norm(cross(d1, d2)) / std::max(norm(d1), norm(d2));
 }
 
 // A bone whose surface moves.
@@ -50,6 +58,7 @@ class Movable {
 
  private:
   void carry_inside();
+  bool restore(const std::vector<Point>& before);
   std::vector<Point> shift_, start_;
   std::vector<std::vector<int>> neighbours_;
   std::vector<char> on_surface_;
@@ -69,6 +78,22 @@ void Movable::carry_inside() {
   }
 }
 
+// bricks and faces that would get too thin: their nodes go back; says whether any did
+bool Movable::restore(const std::vector<Point>& before) {
+  bool any = false;
+  const auto back = [&](int n) {
+    any = any || norm(bone.nodes[std::size_t(n)] - before[std::size_t(n)]) > 0;
+    bone.nodes[std::size_t(n)] = before[std::size_t(n)];
+  };
+  for (const Brick& brick : bone.mesh.bricks)
+    if (scaled_jacobian(corners_of(bone.nodes, brick)) < least_jacobian)
+      for (int n : brick) back(n);
+  for (const Quad& quad : bone.mesh.surface)
+    if (width(bone.nodes, quad) < least_width * width(start_, quad))
+      for (int n : quad) back(n);
+  return any;
+}
+
 bool Movable::move() {
   bool any = false, inside = false;
   for (const Point& s : shift_) any = any || dot(s, s) > 0;
@@ -84,17 +109,7 @@ bool Movable::move() {
   if (!inside) carry_inside();
   const std::vector<Point> before = bone.nodes;
   for (std::size_t n = 0; n < shift_.size(); ++n) bone.nodes[n] += shift_[n];
-  // bricks that would get too thin: their nodes stay where they were
-  for (int round = 0; round < 6; ++round) {
-    bool restored = false;
-    for (const Brick& brick : bone.mesh.bricks) {
-      if (scaled_jacobian(corners_of(bone.nodes, brick)) >= least_jacobian) continue;
-      for (int n : brick) {
-        restored = restored || norm(bone.nodes[std::size_t(n)] - before[std::size_t(n)]) > 0;
-        bone.nodes[std::size_t(n)] = before[std::size_t(n)];
-      }
-    }
-    if (!restored) break;
+  for (int round = 0; round < 6 && restore(before); ++round) {
   }
   for (std::size_t n = 0; n < shift_.size(); ++n) {
     total = std::max(total, norm(bone.nodes[n] - start_[n]));

@@ -1,0 +1,125 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <set>
+
+#include "body/joints/bone_surface.h"
+#include "body/joints/join_bones.h"
+#include "body/joints/joint_law.h"
+#include "body/joints/ligament_law.h"
+#include "body/mesh/quality.h"
+#include "body/tables.h"
+
+using namespace fabrica::body;
+using doctest::Approx;
+
+namespace {
+
+// a block of n x n x n cubic bricks with edge length `size` / n, its lowest corner at `low`
+PlacedBone block(const std::string& name, const Point& low, double size, int n) {
+  PlacedBone bone;
+  bone.mesh.name = name;
+  const auto index = [&](int i, int j, int k) { return (k * (n + 1) + j) * (n + 1) + i; };
+  for (int k = 0; k <= n; ++k)
+    for (int j = 0; j <= n; ++j)
+      for (int i = 0; i <= n; ++i)
+        bone.mesh.nodes.push_back(low + (size / n) * Point{double(i), double(j), double(k)});
+  for (int k = 0; k < n; ++k)
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i)
+        bone.mesh.bricks.push_back({index(i, j, k), index(i + 1, j, k), index(i + 1, j + 1, k),
+                                    index(i, j + 1, k), index(i, j, k + 1), index(i + 1, j, k + 1),
+                                    index(i + 1, j + 1, k + 1), index(i, j + 1, k + 1)});
+  bone.mesh.brick_layer.assign(bone.mesh.bricks.size(), 0);
+  bone.mesh.surface = boundary_quads(bone.mesh.bricks);
+  bone.nodes = bone.mesh.nodes;
+  return bone;
+}
+
+}  // namespace
+
+// Outside a cube the distance is that to the box; inside it is minus the depth under the nearest
+// face.
+TEST_CASE("the nearest point of a surface has the signed distance of a box") {
+  const PlacedBone cube = block("cube", {0, 0, 0}, 10, 4);
+  const BoneSurface surface(cube.nodes, cube.mesh.surface);
+  CHECK(surface.nearest({5, 5, 13}, 5).distance == Approx(3));
+  CHECK(surface.nearest({5, 5, 8}, 5).distance == Approx(-2));
+  CHECK(surface.nearest({13, 14, 5}, 6).distance == Approx(5));
+  CHECK(surface.nearest({5, 5, 20}, 5).quad == -1);
+  const SurfacePoint hit = surface.hit({4, 6, 25}, {0, 0, -1}, 30);
+  CHECK(hit.distance == Approx(15));
+  CHECK(hit.normal.z == Approx(1));
+}
+
+// Blankevoort: k s at the end of the toe (x = 2 s), slope k beyond; nothing where slack or pressed.
+TEST_CASE("a ligament pulls behind its toe with its stiffness and never pushes") {
+  const LigamentStiffness one{20, 0.1, 0, 0, 2};
+  const double s = 0.03 * 20;
+  CHECK(ligament_force(one, 1.9) == 0);
+  CHECK(ligament_force(one, -5) == 0);
+  CHECK(ligament_force(one, 2 + 2 * s) == Approx(0.1 * s));
+  CHECK(ligament_force(one, 10) - ligament_force(one, 9) == Approx(0.1));
+  const LigamentStiffness two{10, 0.05, 0.2, 0.3, 0};
+  CHECK(ligament_force(two, 3) == Approx(0.05 * 2 + 0.3 * 1));
+}
+
+// A chord over a quarter of the toe lies above the parabola by k h^2 / (16 s), h = s / 2.
+TEST_CASE("the curve of a ligament follows its law to the error of its chords") {
+  const LigamentStiffness law{20, 0.1, 0, 0, 2};
+  const Law curve = ligament_curve(law, 4, "", "");
+  const double s = 0.03 * 20, bound = 0.1 * (s / 2) * (s / 2) / (16 * s) / 4;
+  for (double x = -3; x < 20; x += 0.05) {
+    std::size_t i = 1;
+    while (i + 1 < curve.curve.size() && curve.curve[i].first < x) ++i;
+    const auto [x0, f0] = curve.curve[i - 1];
+    const auto [x1, f1] = curve.curve[i];
+    const double f = f0 + (f1 - f0) * (x - x0) / (x1 - x0);
+    CHECK(std::abs(f - ligament_force(law, x) / 4) <= bound * (1 + 1e-9));
+  }
+}
+
+TEST_CASE("blocks that overlap are cleared to the gap without turning bricks over") {
+  std::vector<PlacedBone> bones{block("a", {0, 0, 0}, 20, 4), block("b", {3, 2, 19.4}, 20, 4)};
+  const ClearanceReport report = clear_bones(bones);
+  CHECK(report.left.empty());
+  CHECK(report.least_scaled_jacobian > 0.25);
+  const BoneSurface b(bones[1].nodes, bones[1].mesh.surface);
+  for (const Point& p : bones[0].nodes) {
+    const SurfacePoint there = b.nearest(p, 3);
+    if (there.quad >= 0) CHECK(there.distance > 0.15);
+  }
+  // what stands apart stays as it is
+  std::vector<PlacedBone> apart{block("a", {0, 0, 0}, 20, 4), block("b", {0, 0, 25}, 20, 4)};
+  CHECK(clear_bones(apart).largest_shift == 0);
+}
+
+TEST_CASE("every row of the tables of joints names bones and a law that exist") {
+  std::set<std::string> known(bone_names().begin(), bone_names().end());
+  known.insert("hip_bone_L");
+  for (const char* file : {"anatomy/joints/ligaments.csv", "anatomy/joints/articulations.csv"}) {
+    const Table table(file);
+    for (int row = 0; row < table.rows(); ++row) {
+      CAPTURE(table.text(row, "name"));
+      CHECK(known.count(table.text(row, "bone1")) == 1);
+      CHECK(known.count(table.text(row, "bone2")) == 1);
+      CHECK(!table.text(row, "source").empty());
+    }
+  }
+  for (const char* law : {"nucleus", "annulus", "cartilage", "symphysis"})
+    CHECK(joint_law(law).fields.size() >= 3);
+  CHECK_THROWS_AS(joint_law("ivory"), BodyError);
+}
+
+TEST_CASE("a part that hangs on nothing is named") {
+  std::vector<PlacedBone> bones{block("a", {0, 0, 0}, 20, 2), block("b", {0, 0, 30}, 20, 2),
+                                block("c", {0, 0, 60}, 20, 2)};
+  BetweenBones between;
+  Piece ligament;
+  ligament.nodes = {{{}, 0, -1, 0}, {{}, 1, -1, 0}};
+  ligament.lines = {{0, 1}};
+  between.pieces.push_back(ligament);
+  const auto alone = unconnected(bones, between);
+  REQUIRE(alone.size() == 1);
+  CHECK(alone[0].find(".c.") != std::string::npos);
+}
