@@ -4,6 +4,7 @@
 
 #include "app/bench.h"
 #include "app/body.h"
+#include "app/injury.h"
 #include "app/run.h"
 #include "app/show.h"
 #include "app/signals.h"
@@ -52,6 +53,8 @@ int main(int argc, char** argv) {
   fabrica::SignalCommands signals;
   fabrica::add_signals(app, signals);
   fabrica::add_study(app, study);
+  fabrica::InjuryCommand injury;
+  fabrica::add_injury(app, injury);
   try {
     app.parse(argc, argv);
   } catch (const CLI::RuntimeError& e) {

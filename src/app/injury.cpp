@@ -1,0 +1,172 @@
+#include "app/injury.h"
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "injury/measures.h"
+#include "signal/channel_file.h"
+
+namespace fabrica {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+std::pair<std::string, std::string> assignment(const std::string& text) {
+  const std::size_t equal = text.find('=');
+  if (equal == std::string::npos || equal == 0)
+    throw SignalError("bad-setting", "'" + text + "' is not of the form role=value",
+                      "Write head.ax=run.csv:column");
+  const std::string role = text.substr(0, equal);
+  if (roles().count(role) == 0)
+    throw SignalError("unknown-role", "there is no channel '" + role + "'",
+                      "fabrica injury --list names them");
+  return {role, text.substr(equal + 1)};
+}
+
+// The folder of histories of a run, or "".
+fs::path histories(const std::string& input) {
+  return fs::is_directory(fs::path(input) / "csv") ? fs::path(input) / "csv" : fs::path();
+}
+
+// "nodout:x_acceleration:7" of a run whose folder is an input -> its csv file and column
+std::string located(const InjuryCommand& c, const std::string& where) {
+  const std::size_t colon = where.find(':');
+  for (const std::string& input : c.inputs)
+    if (const fs::path folder = histories(input); !folder.empty() && colon != std::string::npos)
+      if (const fs::path file = folder / (where.substr(0, colon) + ".csv"); fs::exists(file))
+        return file.string() + where.substr(colon);
+  return where;
+}
+
+Channels read_channels(const InjuryCommand& c) {
+  Channels channels;
+  for (const std::string& input : c.inputs) {
+    if (!histories(input).empty()) continue;  // its channels are named one by one
+    for (Signal& s : read_all_signals(input)) {
+      const std::string role = roles().count(s.name) ? s.name : role_of_code(s.name);
+      if (!role.empty()) channels[role] = std::move(s);
+    }
+  }
+  for (const std::string& text : c.channels) {
+    const auto [role, where] = assignment(text);
+    channels[role] = read_signal(located(c, where));
+  }
+  for (const std::string& text : c.units) {
+    const auto [role, unit] = assignment(text);
+    if (const auto found = channels.find(role);
+        found != channels.end() && found->second.unit.empty())
+      found->second.unit = unit;
+  }
+  if (!c.time_unit.empty())
+    for (auto& [role, s] : channels)
+      if (s.x_unit.empty()) s.x_unit = c.time_unit;
+  return channels;
+}
+
+void print_list() {
+  for (const Measure& m : measures()) {
+    fmt::print("{} [{}], {}\n  formula  {}\n  filter   {}\n", m.name, m.unit, m.region, m.formula,
+               m.filter);
+    if (m.limit) fmt::print("  limit    {} ({})\n", *m.limit, m.limit_source);
+    fmt::print("  source   {}\n  channels ", m.source);
+    for (const std::string& role : m.roles) fmt::print(" {}", role);
+    fmt::print("\n");
+  }
+  fmt::print("\nchannels\n");
+  for (const auto& [role, meaning] : roles()) fmt::print("  {:<18}{}\n", role, meaning);
+}
+
+void print_table(const std::vector<Judged>& all) {
+  fmt::print("{:<28}{:>12} {:<5}{:>10}\n", "measure", "value", "unit", "limit");
+  for (const Judged& j : all) {
+    const Measure& m = *j.measure;
+    if (!j.finding) continue;
+    fmt::print("{:<28}{:>12.4g} {:<5}{:>10}{}\n", m.name, j.finding->value,
+               m.unit == "1" ? "" : m.unit, m.limit ? fmt::format("{:.4g}", *m.limit) : "-",
+               m.limit && j.finding->value > *m.limit ? "  exceeded" : "");
+    if (!j.finding->detail.empty()) fmt::print("    {}\n", j.finding->detail);
+    for (const Risk& r : j.finding->risks)
+      fmt::print("    {:<26}{:>10.1f} %    {}\n", r.event, 100 * r.probability, r.source);
+  }
+  fmt::print("\nnot computed\n");
+  for (const Judged& j : all)
+    if (!j.finding) fmt::print("{:<28}{}{}\n", j.measure->name, j.failed ? "error " : "", j.reason);
+}
+
+ordered_json report(const std::vector<Judged>& all) {
+  ordered_json list = ordered_json::array();
+  for (const Judged& j : all) {
+    const Measure& m = *j.measure;
+    ordered_json entry{{"name", m.name}, {"region", m.region}, {"unit", m.unit}};
+    if (j.finding) {
+      entry["value"] = j.finding->value;
+      if (m.limit) entry["exceeded"] = j.finding->value > *m.limit;
+      entry["detail"] = j.finding->detail;
+      entry["risks"] = ordered_json::array();
+      for (const Risk& r : j.finding->risks)
+        entry["risks"].push_back(
+            {{"event", r.event}, {"probability", r.probability}, {"source", r.source}});
+    } else {
+      entry[j.failed ? "error" : "missing"] = j.reason;
+    }
+    entry["filter"] = m.filter, entry["formula"] = m.formula;
+    if (m.limit) entry["limit"] = *m.limit, entry["limit_source"] = m.limit_source;
+    entry["source"] = m.source, entry["channels"] = m.roles;
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+}  // namespace
+
+int injury_command(const InjuryCommand& c) {
+  if (c.list) return print_list(), 0;
+  Subject subject;
+  for (const std::string& text : c.settings) set_parameter(subject, text);
+  const Channels channels = read_channels(c);
+  if (channels.empty())
+    throw SignalError(
+        "no-such-channel", "no input holds a channel that a measure needs",
+        "Name channels by --channel role=curve; fabrica injury --list names the roles");
+  const std::vector<Judged> all = judge(subject, channels);
+  print_table(all);
+  if (!c.json.empty()) {
+    std::ofstream out(c.json);
+    out << ordered_json{{"version", FABRICA_VERSION},
+                        {"age", subject.age},
+                        {"chest_depth_mm", subject.chest_depth},
+                        {"neck", subject.neck},
+                        {"leg", subject.leg},
+                        {"measures", report(all)}}
+               .dump(2)
+        << '\n';
+    if (!out) throw SignalError("cannot-write", "cannot write " + c.json, "Check the folder");
+  }
+  for (const Judged& j : all)
+    if (j.failed) return 1;
+  return 0;
+}
+
+void add_injury(CLI::App& app, InjuryCommand& c) {
+  auto* injury = app.add_subcommand("injury", "Injury measures and risks from channels");
+  injury->add_option("inputs", c.inputs,
+                     "csv tables or ISO-MME tests that hold channels, or the folder of a run");
+  injury->add_option("--channel", c.channels,
+                     "role=curve, as head.ax=run.csv:acc_x or head.ax=nodout:x_acceleration:7");
+  injury->add_option("--unit", c.units,
+                     "role=unit of a channel that names none, as head.ax=mm/ms2");
+  injury->add_option("--time-unit", c.time_unit, "unit of the time of channels that name none");
+  injury->add_option("--set", c.settings,
+                     "NAME=VALUE: age, chest_depth_mm, vc_factor, neck_arm_mm, neck, leg, ...");
+  injury->add_option("--json", c.json, "write all figures here");
+  injury->add_flag("--list", c.list,
+                   "list measures with formula, filter, limit and source, and the channels");
+  injury->callback([&c] { throw CLI::RuntimeError(injury_command(c)); });
+}
+
+}  // namespace fabrica

@@ -1,0 +1,73 @@
+#include "injury/tissue.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "signal/curve.h"
+
+namespace fabrica {
+namespace {
+
+void check_elements(const std::vector<double>& values, const std::vector<double>& volumes) {
+  if (values.empty())
+    throw SignalError("empty-signal", "there are no elements", "Give one row for each element");
+  if (values.size() != volumes.size())
+    throw SignalError("ragged-signal", "values and volumes differ in number",
+                      "Give both for each element");
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!std::isfinite(values[i]) || !(volumes[i] >= 0))
+      throw SignalError("not-a-number", "an element has no finite value or a negative volume",
+                        "Correct its row");
+}
+
+}  // namespace
+
+double volume_quantile(const std::vector<double>& values, const std::vector<double>& volumes,
+                       double q) {
+  check_elements(values, volumes);
+  if (!(q >= 0 && q <= 1))
+    throw SignalError("bad-setting", "a quantile lies between 0 and 1", "Correct it");
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+  const double wanted = q * std::accumulate(volumes.begin(), volumes.end(), 0.0) * (1 - 1e-12);
+  double below = 0;
+  for (const std::size_t i : order)
+    if ((below += volumes[i]) >= wanted) return values[i];
+  return values[order.back()];
+}
+
+double volume_fraction_above(const std::vector<double>& values, const std::vector<double>& volumes,
+                             double threshold) {
+  check_elements(values, volumes);
+  double above = 0, all = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    all += volumes[i];
+    if (values[i] > threshold) above += volumes[i];
+  }
+  if (all == 0)
+    throw SignalError("empty-signal", "the elements have no volume", "Give their volumes");
+  return above / all;
+}
+
+double rib_fracture_probability(double strain, double age) {
+  return strain <= 0
+             ? 0
+             : -std::expm1(-std::pow(strain / std::exp(-2.9866 - 0.0130 * age), 1 / 0.2026));
+}
+
+double at_least(const std::vector<double>& p, int k) {
+  // exactly[n]: probability of n events among those seen so far
+  std::vector<double> exactly(p.size() + 1, 0.0);
+  exactly[0] = 1;
+  for (std::size_t i = 0; i < p.size(); ++i)
+    for (std::size_t n = i + 2; n-- > 0;)
+      exactly[n] = exactly[n] * (1 - p[i]) + (n > 0 ? exactly[n - 1] * p[i] : 0);
+  double sum = 0;
+  for (std::size_t n = std::size_t(std::max(k, 0)); n < exactly.size(); ++n) sum += exactly[n];
+  return std::min(sum, 1.0);  // a sum of all of them exceeds one by rounding
+}
+
+}  // namespace fabrica

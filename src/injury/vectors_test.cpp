@@ -1,0 +1,153 @@
+// Known values of injury measures: closed forms and numerics of high accuracy, as tabulated with
+// the public rating vectors; here each is computed again from a sampled signal.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "injury/body.h"
+#include "injury/catalogue.h"
+#include "injury/head.h"
+#include "injury/tissue.h"
+
+using namespace fabrica;
+using std::numbers::pi;
+
+namespace {
+
+constexpr double per_mille = 1e-3;
+bool close(double a, double b) { return std::abs(a - b) <= per_mille * std::abs(b); }
+
+Signal sampled(const char* unit, double end, double interval, auto&& value) {
+  Signal s{"a", unit, "s", {}, {}};
+  for (int i = 0; i <= int(std::lround(end / interval)); ++i)
+    s.x.push_back(i * interval), s.y.push_back(value(i * interval));
+  return s;
+}
+Signal half_sine(const char* unit, double peak, double duration, double end,
+                 double interval = 1e-5) {
+  return sampled(unit, end, interval,
+                 [=](double t) { return t < duration ? peak * std::sin(pi * t / duration) : 0.0; });
+}
+Signal constant(const char* unit, double value) {
+  return sampled(unit, 0.01, 1e-3, [=](double) { return value; });
+}
+
+}  // namespace
+
+// T a^2.5: 0.010 * 100^2.5 = 1000, 0.015 * 60^2.5, 0.036 * 60^2.5
+TEST_CASE("HIC of rectangular pulses is T a^2.5, limited by the window") {
+  auto rectangle = [](double g, double length) {
+    return sampled("g", 0.08, 1e-5,
+                   [=](double t) { return t >= 0.02 && t <= 0.02 + length + 1e-9 ? g : 0.0; });
+  };
+  CHECK(close(hic(rectangle(100, 0.010), 0.015).value, 1000));
+  CHECK(close(hic(rectangle(60, 0.040), 0.015).value, 418.282201));
+  CHECK(close(hic(rectangle(60, 0.040), 0.036).value, 1003.87728));
+}
+
+// maximisation of the closed-form integral; best window of the first 6.7023 ms
+TEST_CASE("HIC of half-sines and a triangle is that of the best window") {
+  const Hic h = hic(half_sine("g", 100, 0.010, 0.03), 0.015);
+  CHECK(close(h.value, 414.64565));
+  CHECK(std::abs(h.to - h.from - 6.7023e-3) < 1e-4);
+  CHECK(close(hic(half_sine("g", 100, 0.010, 0.06), 0.036).value, 414.64565));
+  CHECK(close(hic(half_sine("g", 50, 0.060, 0.06), 0.015).value, 248.579724));
+  CHECK(close(hic(half_sine("g", 50, 0.060, 0.06), 0.036).value, 434.454003));
+  const Signal triangle =
+      sampled("g", 0.012, 1e-5, [](double t) { return 120 * (1 - std::abs(t - 0.006) / 0.006); });
+  CHECK(close(hic(triangle, 0.015).value, 466.418989));
+}
+
+TEST_CASE("HIC does not depend on units and scales with a^2.5") {
+  Signal a = half_sine("g", 100, 0.010, 0.03), b = a;
+  for (double& y : b.y) y *= 2 * 9.80665;
+  for (double& t : b.x) t *= 1000;
+  b.unit = "m/s2", b.x_unit = "ms";
+  CHECK(close(hic(b, 0.015).value, std::pow(2, 2.5) * hic(a, 0.015).value));
+}
+
+// A cos(pi 1.5 / 20)
+TEST_CASE("3 ms clip of a half-sine, also where 3 ms is no whole number of steps") {
+  CHECK(close(clip(half_sine("g", 60, 0.020, 0.04), 0.003), 58.3421952));
+  CHECK(close(clip(half_sine("g", 60, 0.020, 0.04, 0.7e-4), 0.003), 58.3421952));
+}
+
+TEST_CASE("BrIC of angular velocities with known peaks") {
+  auto of = [](double x, double y, double z) {
+    return bric({constant("rad/s", x), constant("rad/s", y), constant("rad/s", z)});
+  };
+  CHECK(close(of(20, 30, 10), 0.654201722));
+  CHECK(close(of(66.25, 0, 0), 1));
+  CHECK(close(of(-15, 40, -25), 0.945219371));
+  CHECK(close(weibull(0.6, 0.602, 2.84), 0.62864381));
+  CHECK(close(weibull(0.6, 0.12, 2.84), 1));
+}
+
+// reference: integration to a relative tolerance of 1e-10
+TEST_CASE("DAMAGE of half-sine angular accelerations") {
+  auto of = [](double x, double y, double z, double duration) {
+    const double end = 0.3;
+    return damage({half_sine("rad/s2", x, duration, end, 1e-4),
+                   half_sine("rad/s2", y, duration, end, 1e-4),
+                   half_sine("rad/s2", z, duration, end, 1e-4)});
+  };
+  CHECK(close(of(5000, 0, 0, 0.010), 0.251564631));
+  CHECK(close(of(0, 5000, 0, 0.010), 0.335651486));
+  CHECK(close(of(0, 0, 5000, 0.010), 0.402999529));
+  CHECK(close(of(3000, 4000, 2000, 0.015), 0.493210765));
+}
+
+TEST_CASE("Nij of constant forces and moments in each of the four cases") {
+  const NeckIntercepts set = neck_intercepts("H3-50M");
+  auto of = [&](double f, double m) { return nij(constant("N", f), constant("Nm", m), set); };
+  CHECK(close(of(3000, 60).tension_flexion, 0.634335928));
+  CHECK(close(of(3000, -60).tension_extension, 0.885231985));
+  CHECK(close(of(-2500, 100).compression_flexion, 0.728424801));
+  CHECK(close(of(-2500, -40).compression_extension, 0.702140452));
+  CHECK(close(of(0, 155).largest(), 0.5));
+  // M_oc = M_y - e F_x
+  CHECK(close(occipital_moment(constant("Nm", 50), constant("kN", 1), 0.01778).y[0], 32.22));
+  CHECK_THROWS_AS(neck_intercepts("nobody"), SignalError);
+}
+
+// D_0 sin(pi t / T): max of V C = D_0^2 pi / (2 T D_ref)
+TEST_CASE("VC of a half-sine deflection") {
+  const Signal d = half_sine("mm", 40, 0.040, 0.040, 1e-4);
+  CHECK(close(viscous_criterion(d, 0.229, 1.3), 0.356687376));
+  CHECK(close(viscous_criterion(d, 0.229, 1.0), 0.274374904));
+}
+
+TEST_CASE("tibia index and thoracic index of constant loads") {
+  CHECK(close(tibia_index(constant("Nm", 100), constant("Nm", 120), constant("kN", -4),
+                          tibia_limits("H3-50M")),
+              0.805665028));
+  CHECK(combined_thoracic_index(85, 102) == 2);
+  CHECK(largest_compression(constant("kN", -7)) == 7);
+  CHECK(largest_compression(constant("kN", 7)) == 0);
+}
+
+TEST_CASE("ribs: probability of at least k fractures is exact") {
+  const std::vector<double> p{0.05, 0.1, 0.3, 0.6, 0.02, 0.15, 0, 0.4, 0.25, 0.08, 0.01, 0.5};
+  CHECK(close(at_least(p, 1), 0.959132818));
+  CHECK(close(at_least(p, 2), 0.779879127));
+  CHECK(close(at_least(p, 3), 0.469377924));
+  CHECK(close(at_least(p, 6), 0.00838025543));
+  CHECK(std::abs(at_least(p, 0) - 1) < 1e-12);
+}
+
+TEST_CASE("ribs: the risk of one rib rises with strain and age, and is a half at its median") {
+  const double median = std::exp(-2.9866 - 0.0130 * 40) * std::pow(std::log(2.0), 0.2026);
+  CHECK(std::abs(rib_fracture_probability(median, 40) - 0.5) < 1e-12);
+  CHECK(rib_fracture_probability(0.02, 70) > rib_fracture_probability(0.02, 30));
+  CHECK(rib_fracture_probability(0, 30) == 0);
+}
+
+TEST_CASE("tissue: quantiles and fractions weigh elements by their volume") {
+  const std::vector<double> strain{0.1, 0.3, 0.2}, volume{90, 4, 6};
+  CHECK(volume_quantile(strain, volume, 1) == 0.3);
+  CHECK(volume_quantile(strain, volume, 0.95) == 0.2);
+  CHECK(volume_quantile(strain, volume, 0.5) == 0.1);
+  CHECK(std::abs(volume_fraction_above(strain, volume, 0.15) - 0.1) < 1e-12);
+  CHECK_THROWS_AS(volume_quantile({}, {}, 1), SignalError);
+}
