@@ -119,6 +119,24 @@ void progress(const Simulation& s, double started_at, double wall) {
   std::fflush(stdout);
 }
 
+// penetration at the start and the deepest since, over all contacts
+void add_penetrations(const Contacts& contacts, nlohmann::ordered_json& j) {
+  int initial = 0;
+  double initial_depth = 0, depth = 0, share = 0;
+  std::int64_t released = 0;
+  for (const ContactCheck& c : contacts.checks()) {
+    initial += c.initial_nodes, released += c.deepest.released;
+    initial_depth = std::max(initial_depth, c.initial_depth);
+    depth = std::max(depth, c.deepest.depth);
+    if (c.deepest.allowed > 0) share = std::max(share, c.deepest.depth / c.deepest.allowed);
+  }
+  j["contact_initial_penetrations"] = initial;
+  j["contact_initial_depth"] = initial_depth;
+  j["contact_largest_penetration"] = depth;
+  j["contact_largest_penetration_percent"] = 100 * share;  // of the depth at which a node is let go
+  j["contact_nodes_let_go"] = released;
+}
+
 nlohmann::ordered_json summary(const Simulation& s, double wall, std::int64_t first_cycle) {
   const State& st = s.state();
   const Energies& e = st.energy;
@@ -140,6 +158,7 @@ nlohmann::ordered_json summary(const Simulation& s, double wall, std::int64_t fi
   j["damping_energy"] = e.damping;
   j["discrete_energy"] = e.discrete;
   j["joint_energy"] = e.joint;
+  if (!s.model().contacts.empty()) add_penetrations(s.contacts(), j);
   if (s.joints().size() > 0) j["joint_gap"] = s.joints().largest_gap(s.rigid_bodies());
   j["external_work"] = e.external_work;
   j["total_energy"] = e.total();
@@ -161,6 +180,18 @@ std::vector<std::string> findings(const Simulation& s) {
   if (e.hourglass > 0.05 * std::max(e.internal, 0.01 * scale))
     list.push_back(fmt::format("hourglass energy is {:.1f} % of internal energy (bound 5 %)",
                                100 * e.hourglass / std::max(e.internal, 1e-300)));
+  for (const ContactCheck& c : s.contacts().checks()) {
+    const Model& m = s.model();
+    const PenetrationCheck& p = c.deepest;
+    if (p.released > 0)
+      list.push_back(fmt::format("contact {}: {} times a node went so deep that it was let go", m.contacts[c.contact].id,
+                                 p.released));
+    if (p.allowed > 0 && p.depth > 0.5 * p.allowed)
+      list.push_back(fmt::format("contact {}: node {} was {:.4g} deep{} at t = {:.4g}, {:.0f} % of what it may be",
+                                 m.contacts[c.contact].id, m.nodes.id[p.node], p.depth,
+                                 p.part >= 0 ? fmt::format(" in part {}", m.parts[p.part].id) : "", p.time,
+                                 100 * p.depth / p.allowed));
+  }
   if (e.contact < -0.01 * scale) list.push_back("sliding energy is negative by more than 1 %");
   if (s.physical_mass() > 0 && s.added_mass() > 0.01 * s.physical_mass())
     list.push_back(fmt::format("added mass is {:.1f} % (bound 1 %)", 100 * s.added_mass() / s.physical_mass()));

@@ -228,6 +228,7 @@ struct Contact {
   bool offset = false;              // tied: _OFFSET (penalty)
   bool constrained_offset = false;  // tied: _CONSTRAINED_OFFSET
   bool beam_offset = false;
+  bool oriented = false;  // shells touch only on the side their normal points to
   ContactSide a, b;  // tracked (slave) and reference (master)
   double fs = 0, fd = 0, dc = 0, vc = 0, vdc = 0;
   double birth = 0, death = 1e28;
@@ -374,6 +375,7 @@ struct Controls {
   double contact_scale = 0.1;           // SLSFAC
   double rigid_wall_penalty = 0;        // RWPNAL
   int contact_ignore = 0;
+  int contact_orientation = 1;          // ORIEN
   int penalty_option = 1;
   int shell_thickness_option = 0;       // SHLTHK
   bool tied_projection = true;          // TIEDPRJ = 0

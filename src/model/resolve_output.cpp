@@ -54,6 +54,7 @@ void Resolver::read_control_contact(const Card& card) {
   c.penalty_option = int(nonzero(card, "penopt", 1));
   c.tied_projection = card.integer("tiedprj") == 0;
   c.contact_ignore = card.integer("ignore");
+  c.contact_orientation = int(nonzero(card, "orien", 1));
 }
 
 // *DATABASE_GLSTAT and its like: the interval; sections and histories have readers of their own.

@@ -5,6 +5,8 @@
 #include <ostream>
 #include <string>
 
+#include "solver/contact_orientation.h"
+
 namespace fabrica {
 namespace {
 
@@ -27,7 +29,6 @@ void check_options(const Model& model, const Contact& c, Diagnostics& diagnostic
     diagnostics.warning(name, c.where, "CONTACT", field,
                         "contact " + std::to_string(c.id) + ": " + message);
   };
-  if (c.soft == 2) warn("contact-soft-2", "soft", "SOFT=2 acts as SOFT=1, node to segment");
   if (c.kind == ContactKind::automatic_general)
     warn("contact-general-edges", "",
          "beams and free edges do not touch each other, only surfaces do");
@@ -35,11 +36,21 @@ void check_options(const Model& model, const Contact& c, Diagnostics& diagnostic
     warn("contact-ignore-0", "ignore",
          "nodes that penetrate at the start stay where they are; their penetration is not pushed "
          "back");
-  for (const ContactSide* s : {&c.a, &c.b})
-    for (int p : s->parts)
-      if (model.parts[p].contact &&
-          (model.parts[p].contact->fs != 0 || model.parts[p].contact->fd != 0) && c.fs == -1)
-        return warn("contact-part-friction", "fs", "friction by part (FS=-1) is not used");
+  if (c.fs == -2)
+    warn("contact-friction-table", "fs",
+         "friction of *DEFINE_FRICTION (FS=-2) is not used: no friction");
+}
+
+// old kinds: shells given by parts turn to the other side, those of sets only where ORIEN asks
+void orient(const Model& model, const Contact& c, ContactSurface& a, ContactSurface& b) {
+  using Kind = ContactSide::Kind;
+  const int option = model.controls.contact_orientation;
+  if (!c.oriented || option == 3) return;
+  auto wanted = [&](const ContactSide& s) {
+    return option == 2 || s.kind == Kind::parts || s.kind == Kind::part || s.kind == Kind::all;
+  };
+  if (wanted(c.a)) face_each_other(a, b, model.nodes.x);
+  if (wanted(c.b)) face_each_other(b, a, model.nodes.x);
 }
 
 }  // namespace
@@ -92,13 +103,22 @@ void Contacts::add_contact(const Model& model, int index, const SurfaceSource& s
     second_pass_.push_back(second);
   };
   ContactSurface a = source.build(contact, contact.a, false);
-  if (is_single(contact.kind)) return add(a, a, false);
+  if (is_single(contact.kind)) {
+    if (contact.soft == 2)
+      segment_passes_.push_back(
+          std::make_unique<SegmentPass>(model, contact, index, a, a, true, carriers_));
+    return add(a, a, false);
+  }
   ContactSurface b = source.build(contact, contact.b, true);
   if (b.segments.empty())
     diagnostics.warning(
         "contact-no-segments", contact.where, "CONTACT", "msid",
         "contact " + std::to_string(contact.id) + ": the reference side has no segments",
         "Check the set or part of the reference side");
+  orient(model, contact, a, b);
+  if (contact.soft == 2)
+    segment_passes_.push_back(
+        std::make_unique<SegmentPass>(model, contact, index, a, b, false, carriers_));
   add(a, b, false);
   if (is_two_way(contact.kind) && !a.segments.empty()) add(std::move(b), std::move(a), true);
 }
@@ -119,6 +139,7 @@ void Contacts::forces(const Model&, State& state, Team& team) {
   // the first forces have no step behind them: stiffness that depends on one takes the expected
   // step
   for (auto& pass : passes_) pass->forces(state, team, dt > 0 ? dt : initial_dt_);
+  for (auto& pass : segment_passes_) pass->forces(state, team, dt > 0 ? dt : initial_dt_);
   tied_->forces(state);
   if (!report_complete_) complete_report();
 }
@@ -126,6 +147,8 @@ void Contacts::forces(const Model&, State& state, Team& team) {
 void Contacts::complete_report() {
   report_complete_ = true;
   for (const auto& pass : passes_)
+    for (const InitialPenetration& p : pass->initial_penetrations()) report_.worst.push_back(p);
+  for (const auto& pass : segment_passes_)
     for (const InitialPenetration& p : pass->initial_penetrations()) report_.worst.push_back(p);
   report_.penetrating_nodes = int(report_.worst.size());
   std::stable_sort(report_.worst.begin(), report_.worst.end(),
@@ -136,11 +159,26 @@ void Contacts::complete_report() {
 
 void Contacts::account(State& state) {
   for (auto& pass : passes_) pass->account(state);
+  for (auto& pass : segment_passes_) pass->account(state);
   tied_->account(state);
 }
 
 void Contacts::transfer_tied_forces(State& state, Team&) { tied_->transfer_forces(state); }
 void Contacts::place_tied_nodes(State& state, Team&) { tied_->place_nodes(state); }
+
+std::vector<ContactCheck> Contacts::checks() const {
+  std::vector<ContactCheck> list;
+  auto add = [&](const auto& pass) {
+    ContactCheck c{pass->contact_index(), int(pass->initial_penetrations().size()), 0,
+                   pass->penetration()};
+    for (const InitialPenetration& p : pass->initial_penetrations())
+      c.initial_depth = std::max(c.initial_depth, p.depth);
+    list.push_back(c);
+  };
+  for (const auto& pass : passes_) add(pass);
+  for (const auto& pass : segment_passes_) add(pass);
+  return list;
+}
 
 std::vector<Contacts::Resultant> Contacts::resultants() const {
   std::vector<Resultant> list = fixed_;
@@ -158,6 +196,15 @@ std::vector<Contacts::Resultant> Contacts::resultants() const {
     (second_pass_[p] ? r.energy_b : r.energy_a) += pass.energy();
     r.friction_energy += pass.friction_energy();
   }
+  for (const auto& pass : segment_passes_) {
+    Resultant& r = list[pass->contact_index()];
+    Vec3d sum{0, 0, 0};
+    for (const auto& chunk : pass->active_forces())
+      for (const SegmentForce& f : chunk) sum += f.normal + f.friction;
+    if (r.mass_b != 0) r.side_a += sum, r.side_b -= sum;
+    r.energy_a += 0.5 * pass->energy(), r.energy_b += 0.5 * pass->energy();
+    r.friction_energy += pass->friction_energy();
+  }
   for (Resultant& r : list)
     if (r.contact >= 0 && tied_->has_ties(r.contact)) {
       r.side_a = tied_->force_of(r.contact);
@@ -167,29 +214,41 @@ std::vector<Contacts::Resultant> Contacts::resultants() const {
   return list;
 }
 
+// visit(a node of the side that gets the force, a node of the other side, force)
+template <class Visit>
+void Contacts::each_force(Visit visit) const {
+  for (const auto& pass : passes_)
+    for (const auto& chunk : pass->active_forces())
+      for (const ContactForce& f : chunk)
+        visit(f.node, pass->reference().segments[f.segment].node[0], f.normal + f.friction);
+  for (const auto& pass : segment_passes_)
+    for (const auto& chunk : pass->active_forces())
+      for (const SegmentForce& f : chunk)
+        visit(pass->first().segments[f.first].node[0], pass->second().segments[f.second].node[0],
+              f.normal + f.friction);
+}
+
 void Contacts::add_to_transducers(std::vector<Resultant>& list) const {
   for (const Transducer& t : transducers_) {
     Resultant& r = list[t.contact];
     r.contact = t.contact;
-    for (const auto& pass : passes_)
-      for (const auto& chunk : pass->active_forces())
-        for (const ContactForce& f : chunk) {
-          const int corner = pass->reference().segments[f.segment].node[0];
-          const Vec3d total = f.normal + f.friction;
-          const bool any = t.in_b.empty();
-          if (t.in_a[f.node] && (any || t.in_b[corner])) r.side_a += total, r.side_b -= total;
-          if (t.in_a[corner] && (any || t.in_b[f.node])) r.side_a -= total, r.side_b += total;
-        }
+    const bool any = t.in_b.empty();
+    each_force([&](int node, int other, const Vec3d& total) {
+      if (t.in_a[node] && (any || t.in_b[other])) r.side_a += total, r.side_b -= total;
+      if (t.in_a[other] && (any || t.in_b[node])) r.side_a -= total, r.side_b += total;
+    });
   }
 }
 
 void Contacts::save(std::ostream& out) const {
   tied_->save(out);
   for (const auto& pass : passes_) pass->save(out);
+  for (const auto& pass : segment_passes_) pass->save(out);
 }
 void Contacts::load(std::istream& in) {
   tied_->load(in);
   for (auto& pass : passes_) pass->load(in);
+  for (auto& pass : segment_passes_) pass->load(in);
 }
 
 }  // namespace fabrica

@@ -13,6 +13,7 @@
 #include "solver/contact_pass.h"
 #include "solver/contact_surface.h"
 #include "solver/contact_tied.h"
+#include "solver/segment_pass.h"
 
 namespace fabrica {
 
@@ -23,6 +24,14 @@ struct InitialReport {
   std::vector<InitialPenetration> worst;  // at most 20, deepest first
   int tied_nodes = 0;
   std::vector<int> untied_nodes;  // of tied contacts: too far from any segment
+};
+
+// What one direction of a contact saw so far.
+struct ContactCheck {
+  int contact;
+  int initial_nodes;
+  double initial_depth;
+  PenetrationCheck deepest;
 };
 
 class Contacts {
@@ -56,6 +65,8 @@ class Contacts {
     double energy_a = 0, energy_b = 0, friction_energy = 0, mass_a = 0, mass_b = 0;
   };
   std::vector<Resultant> resultants() const;
+  // How deep surfaces went into each other, one entry a direction of a contact.
+  std::vector<ContactCheck> checks() const;
   // Complete after the first forces().
   const InitialReport& initial_report() const { return report_; }
   // Smallest 2 sqrt(m/k) over the nodes of contacts with SOFT=0 at the start.
@@ -72,6 +83,8 @@ class Contacts {
   void add_transducer(const Model& model, int contact, const SurfaceSource& source);
   void add_to_transducers(std::vector<Resultant>& resultants) const;
   void complete_report();
+  template <class Visit>
+  void each_force(Visit visit) const;
 
   struct Transducer {
     int contact;
@@ -80,7 +93,8 @@ class Contacts {
   CarrierNodes carriers_;
   std::unique_ptr<TiedNodes> tied_;
   std::vector<std::unique_ptr<ContactPass>> passes_;
-  std::vector<char> second_pass_;  // tracked side is b
+  std::vector<char> second_pass_;                             // tracked side is b
+  std::vector<std::unique_ptr<SegmentPass>> segment_passes_;  // SOFT=2
   std::vector<Transducer> transducers_;
   std::vector<Resultant> fixed_;  // masses
   InitialReport report_;

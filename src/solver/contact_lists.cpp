@@ -25,7 +25,7 @@ struct Filter : PairFilter {
       : tracked(t), reference(r), carriers(c), start(x) {}
   // the other face of the same thin solid, through the material
   bool opposite_face(const ContactNode& n, const ContactSegment& s) const {
-    if (s.two_sided || n.part != s.part) return false;
+    if (s.shell || n.part != s.part) return false;
     const Vec3d &a = start[s.node[0]], &b = start[s.node[1]], &c = start[s.node[2]],
                 &d = start[s.node[3]];
     const Vec3d normal =

@@ -5,6 +5,8 @@
 #include <istream>
 #include <ostream>
 
+#include "contact/segment_overlap.h"
+
 namespace fabrica {
 namespace {
 
@@ -55,9 +57,9 @@ ContactPass::ContactPass(const Model& model, const Contact& contact, int contact
       reference_(std::move(reference)),
       carriers_(carriers),
       start_(model.nodes.x),
+      friction_(model, contact),
+      has_friction_(friction_.active()),
       penalty_option_(model.controls.penalty_option) {
-  friction_ = {contact.fs * contact.fsf, contact.fd * contact.fsf, contact.dc,
-               contact.vc * contact.vsf};
   std::vector<double> sizes;
   for (const ContactSegment& s : reference_.segments) {
     sizes.push_back(std::sqrt(s.area));
@@ -76,11 +78,30 @@ ContactPass::ContactPass(const Model& model, const Contact& contact, int contact
   }
   outer_skin_ = 0.3 * size_, inner_skin_ = 0.04 * size_;
   slots_.resize(max_slots * tracked_.nodes.size());
+  if (contact.soft == 2) find_segments_around();
+}
+
+void ContactPass::find_segments_around() {
+  std::vector<std::vector<int>> of_node(start_.size());
+  for (int s = 0; s < int(tracked_.segments.size()); ++s)
+    for (int i = 0; i < (tracked_.segments[s].triangle ? 3 : 4); ++i)
+      of_node[tracked_.segments[s].node[i]].push_back(s);
+  around_first_.assign(1, 0);
+  for (const ContactNode& n : tracked_.nodes) {
+    around_.insert(around_.end(), of_node[n.node].begin(), of_node[n.node].end());
+    around_first_.push_back(int(around_.size()));
+  }
 }
 
 double ContactPass::reach(int tracked, int segment) const {
   const ContactSegment& s = reference_.segments[segment];
   return std::max(tracked_.nodes[tracked].half_thickness + s.half_thickness, s.limit);
+}
+
+// a node deeper than this is let go
+double ContactPass::release_depth(int tracked, int segment) const {
+  const ContactSegment& s = reference_.segments[segment];
+  return tracked_.nodes[tracked].half_thickness + s.half_thickness + s.limit;
 }
 
 void ContactPass::corners(const State& state, const ContactSegment& s, Vec3d* X) const {
@@ -199,6 +220,9 @@ void ContactPass::node_forces(State& state, const ActiveNode& active, int chunk)
     }
   const int used = select(state, active, list, count, accepted);
   if (used == 0) {
+    if (slots[0].segment >= 0 &&
+        slots[0].depth > 0.5 * release_depth(active.tracked, slots[0].segment))
+      ++chunk_penetration_[chunk].released;
     remember_sides(list, count);
     for (int k = 0; k < max_slots; ++k) slots[k] = {};
     return;
@@ -248,20 +272,25 @@ void ContactPass::push(State& state, int tracked, const Evaluation& e, const Acc
     const double soft = soft_stiffness(contact_.sofscl, mass, step_);
     k = std::isfinite(k) ? std::max(k, soft) : soft;
   }
+  if (!around_first_.empty()) k *= own_share(state, tracked, a.direction);
   const double rate = -dot(v, a.direction);
-  // depth that appears faster than the surfaces approach comes from a change of segment or side: it stores no
-  // energy, so it must not push
+  // depth that appears faster than the surfaces approach comes from a change of segment or side: it
+  // stores no energy, so it must not push
   const double sudden = a.depth - slot.depth - 2 * std::max(0.0, rate) * dt;
   if (started_ && sudden > 0) slot.baseline += sudden;
   slot.depth = a.depth;
   slot.baseline = std::min(slot.baseline, a.depth);
   const double depth = a.depth - slot.baseline;
   const double normal = depth > 0 ? normal_force(k, depth, rate, mass, contact_.vdc / 100) : 0.0;
+  PenetrationCheck& worst = chunk_penetration_[chunk];
+  if (depth > worst.depth)
+    worst.depth = depth, worst.node = n.node, worst.part = s.part,
+    worst.allowed = release_depth(tracked, slot.segment);
   Vec3d friction{0, 0, 0};
-  if (friction_.active()) {
+  if (has_friction_) {
     const Vec3d slide = v + rate * a.direction;
-    friction = friction_force(friction_, k, normal, a.direction, slot.friction, dt * slide,
-                              norm(slide), s.area);
+    friction = friction_force(friction_.between(n.part, s.part), k, normal, a.direction,
+                              slot.friction, dt * slide, norm(slide), s.area);
   }
   slot.friction = friction;
   if (normal == 0) return;
@@ -273,6 +302,21 @@ void ContactPass::push(State& state, int tracked, const Evaluation& e, const Acc
     if (f.phi[i] != 0) state.interaction.add(s.node[i], -f.phi[i] * total);
   chunk_power_[chunk].x += dot(f.normal, v), chunk_power_[chunk].y += dot(f.friction, v);
   chunk_forces_[chunk].push_back(f);
+}
+
+// SOFT=2: what pairs of facing segments do not carry (segment_pass.h)
+double ContactPass::own_share(const State& state, int tracked, const Vec3d& direction) const {
+  double cosine = 0;
+  for (int i = around_first_[tracked]; i < around_first_[tracked + 1]; ++i) {
+    const ContactSegment& s = tracked_.segments[around_[i]];
+    Vec3d X[4];
+    corners(state, s, X);
+    const Vec3d normal = contact_detail::unit(s.triangle ? cross(X[1] - X[0], X[2] - X[0])
+                                                         : cross(X[2] - X[0], X[3] - X[1]));
+    cosine =
+        std::max(cosine, s.two_sided ? std::abs(dot(normal, direction)) : -dot(normal, direction));
+  }
+  return 1 - facing_share(cosine);
 }
 
 void ContactPass::forces(State& state, Team& team, double step) {
@@ -294,11 +338,13 @@ void ContactPass::forces(State& state, Team& team, double step) {
   const int count = int(active_.size()), chunks = (count + chunk_size - 1) / chunk_size;
   if (int(chunk_forces_.size()) < chunks) chunk_forces_.resize(chunks);
   chunk_power_.assign(chunks, Vec3d{0, 0, 0});
+  chunk_penetration_.assign(chunks, PenetrationCheck{});
   chunk_initial_.resize(std::max(int(chunk_initial_.size()), chunks));
   team.for_each(chunks, [&](int chunk, int) {
     for (int i = chunk * chunk_size; i < std::min(count, (chunk + 1) * chunk_size); ++i)
       node_forces(state, active_[i], chunk);
   });
+  for (const PenetrationCheck& c : chunk_penetration_) penetration_.take(c, state.time);
   Vec3d power{0, 0, 0};
   for (const Vec3d& p : chunk_power_) power += p;
   if (!started_)
@@ -339,12 +385,16 @@ double ContactPass::stable_time_step(const State& state) const {
 void ContactPass::save(std::ostream& out) const {
   put(out, outer_reference_), put(out, inner_reference_), put(out, first_), put(out, candidates_);
   put(out, active_), put(out, active_pairs_), put(out, slots_);
+  put(out, std::vector<PenetrationCheck>{penetration_});
   put(out, std::vector<double>{energy_, friction_energy_, started_ ? 1.0 : 0.0, double(searches_)});
 }
 
 void ContactPass::load(std::istream& in) {
   take(in, outer_reference_), take(in, inner_reference_), take(in, first_), take(in, candidates_);
   take(in, active_), take(in, active_pairs_), take(in, slots_);
+  std::vector<PenetrationCheck> check;
+  take(in, check);
+  if (!check.empty()) penetration_ = check[0];
   std::vector<double> rest;
   take(in, rest);
   rest.resize(4);

@@ -16,6 +16,7 @@
 #include "contact/closest_point.h"
 #include "contact/penalty.h"
 #include "model/state.h"
+#include "solver/contact_friction.h"
 #include "solver/contact_surface.h"
 #include "solver/contact_tied.h"
 
@@ -48,6 +49,21 @@ struct InitialPenetration {
   double depth;
 };
 
+// How well a contact held: the deepest penetration so far (less what was there at the start), and
+// nodes that went so deep that they were let go.
+struct PenetrationCheck {
+  double depth = 0, time = 0;
+  double allowed = 0;        // depth at which that node is let go
+  int node = -1, part = -1;  // of the model; part of the segment
+  std::int64_t released = 0;
+  // joins what a part of the pairs saw at a time; the first of equals stays
+  void take(const PenetrationCheck& c, double now) {
+    const std::int64_t sum = released + c.released;
+    if (c.depth > depth) *this = c, time = now;
+    released = sum;
+  }
+};
+
 class ContactPass {
  public:
   ContactPass(const Model& model, const Contact& contact, int contact_index, ContactSurface tracked,
@@ -66,6 +82,7 @@ class ContactPass {
   const ContactSurface& reference() const { return reference_; }
   const std::vector<std::vector<ContactForce>>& active_forces() const { return chunk_forces_; }
   const std::vector<InitialPenetration>& initial_penetrations() const { return initial_; }
+  const PenetrationCheck& penetration() const { return penetration_; }
   double energy() const { return energy_; }
   double friction_energy() const { return friction_energy_; }
   int searches() const { return searches_; }
@@ -108,6 +125,9 @@ class ContactPass {
   void corners(const State& state, const ContactSegment& s, Vec3d* X) const;
   SurfacePoint project(const State& state, int segment, const Vec3d& x, double r, double s) const;
   double reach(int tracked, int segment) const;
+  double release_depth(int tracked, int segment) const;
+  double own_share(const State& state, int tracked, const Vec3d& direction) const;
+  void find_segments_around();
   void remember_positions(const State& state, std::vector<Vec3d>& reference) const;
   Vec3d translation(const State& state, const std::vector<Vec3d>& reference) const;
 
@@ -116,10 +136,13 @@ class ContactPass {
   ContactSurface tracked_, reference_;
   const CarrierNodes& carriers_;
   const std::vector<Vec3d>& start_;  // positions in the model
-  Friction friction_;
+  ContactFriction friction_;
+  bool has_friction_;
   int penalty_option_;
   double outer_skin_ = 0, inner_skin_ = 0, size_ = 0, largest_half_ = 0;
   std::vector<int> nodes_;  // all nodes of the pass, ascending
+  // SOFT=2: segments around tracked node i, of the tracked surface; else empty
+  std::vector<int> around_first_, around_;
   // history
   std::vector<Vec3d> outer_reference_, inner_reference_;
   std::vector<int> first_;  // candidates of tracked node i
@@ -130,10 +153,12 @@ class ContactPass {
   bool started_ = false;
   double step_ = 0;
   double energy_ = 0, friction_energy_ = 0;
+  PenetrationCheck penetration_;
   // this cycle
   std::vector<std::vector<ContactForce>> chunk_forces_;
   std::vector<Vec3d> chunk_power_;  // x: normal, y: friction
   std::vector<std::vector<InitialPenetration>> chunk_initial_;
+  std::vector<PenetrationCheck> chunk_penetration_;
   std::vector<InitialPenetration> initial_;
   int searches_ = 0;
 };

@@ -144,6 +144,11 @@ void SurfaceSource::find_bodies() {
       if (node_body_[n] < 0) node_body_[n] = int(model_.parts.size() + b);
 }
 
+double SurfaceSource::density(int part) const {
+  const int material = model_.parts[part].material;
+  return material < 0 ? 0 : model_.materials[material].density;
+}
+
 void SurfaceSource::finish_segment(ContactSegment& s) const {
   const int body = node_body_[s.node[0]];
   const bool same = std::all_of(s.node, s.node + 4, [&](int n) { return node_body_[n] == body; });
@@ -162,6 +167,7 @@ void SurfaceSource::add_solid_face(const Face& face, const Contact&, double scal
   if (contact && contact->stiffness_scale > 0) scale *= contact->stiffness_scale;
   g.stiffness = scale * solid_face_stiffness(input_.part_bulk[g.part], g.area, face.volume);
   g.limit = g.area > 0 ? 0.5 * face.volume / g.area : 0;
+  g.mass_per_area = density(g.part) * g.limit;
   finish_segment(g);
   s.segments.push_back(g);
 }
@@ -191,8 +197,16 @@ void SurfaceSource::add_shell(int shell, const Contact& contact, bool reference,
   g.stiffness = scale * shell_stiffness(input_.part_bulk[g.part], g.area,
                                         longest_diagonal(model_.nodes.x, g));
   g.limit = std::max(g.half_thickness, 0.25 * std::sqrt(g.area));
+  g.mass_per_area = density(g.part) * input_.shell_thickness[shell];
+  orient(g, contact);
   finish_segment(g);
   s.segments.push_back(g);
+}
+
+// what lies behind an oriented shell penetrates, however thin the shell is
+void SurfaceSource::orient(ContactSegment& g, const Contact& contact) const {
+  g.shell = true, g.two_sided = !contact.oriented;
+  if (contact.oriented) g.limit = contact.penmax > 0 ? contact.penmax : std::sqrt(g.area);
 }
 
 // a segment of a set takes after the shell or the exterior face that it lies on
@@ -220,6 +234,7 @@ void SurfaceSource::add_set(const SegmentSet& set, const Contact& contact, bool 
       g.area = norm(area_vector(model_.nodes.x, corners));
       g.stiffness = std::numeric_limits<double>::infinity();
       g.limit = 0.25 * std::sqrt(g.area);
+      orient(g, contact);
       finish_segment(g);
       s.segments.push_back(g);
     }
@@ -282,7 +297,7 @@ void SurfaceSource::collect_nodes(const Contact& contact, ContactSurface& s) con
       if (n.part < 0) n.part = g.part;
       n.half_thickness = std::max(n.half_thickness, g.half_thickness);
       stiffness[a].first += g.stiffness, ++stiffness[a].second;
-      if (!g.two_sided)
+      if (!g.shell)
         n.normal +=
             area_vector(model_.nodes.x, distinct({g.node[0], g.node[1], g.node[2], g.node[3]}));
     }

@@ -26,8 +26,10 @@ struct ContactSegment {
   double stiffness = 0;  // with SLSFAC and SFS/SFM
   double limit = 0;      // deeper than this behind the surface: not in contact
   double area = 0;
+  double mass_per_area = 0;  // of the shell, of half the solid; 0: not known
   bool triangle = false;
-  bool two_sided = true;  // false: the normal points out of a solid
+  bool two_sided = true;  // false: the normal points out of a solid, or an oriented shell
+  bool shell = false;
   std::uint8_t free_features =
       0;  // bit i: edge i -> i+1 belongs to no other segment; bit 4+i: corner i on such
 };
@@ -72,7 +74,9 @@ class SurfaceSource {
                ContactSurface& s) const;
   void add_beam_nodes(const ContactSide& side, ContactSurface& s) const;
   void add_set_nodes(const NodeSet& set, ContactSurface& s) const;
+  double density(int part) const;
   void finish_segment(ContactSegment& segment) const;
+  void orient(ContactSegment& segment, const Contact& contact) const;
   void collect_nodes(const Contact& contact, ContactSurface& s) const;
 
   const Model& model_;
