@@ -32,16 +32,16 @@ inline double facing_share(double cosine) { return std::clamp((cosine - 0.5) / 0
 
 namespace overlap_detail {
 
-struct Point {
+struct PlanePoint {
   double x, y;
 };
-inline double side(const Point& a, const Point& b, const Point& p) {
+inline double side(const PlanePoint& a, const PlanePoint& b, const PlanePoint& p) {
   return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
 }
 
 // corners of a segment in the plane, counted counter-clockwise for clipping, and their heights
 struct Projection {
-  Point corner[4];
+  PlanePoint corner[4];
   double height[4];
   int count;
   bool clockwise;
@@ -55,15 +55,15 @@ struct Projection {
       corner[i] = {dot(u, e1), dot(u, e2)}, height[i] = dot(u, n);
     }
     for (int i = 0; i < count; ++i) {
-      const Point &a = corner[i], &b = corner[(i + 1) % count];
+      const PlanePoint &a = corner[i], &b = corner[(i + 1) % count];
       area += a.x * b.y - a.y * b.x;
     }
     clockwise = area < 0;
   }
-  const Point& at(int i) const { return corner[clockwise ? count - 1 - i : i]; }
+  const PlanePoint& at(int i) const { return corner[clockwise ? count - 1 - i : i]; }
 
   // shape functions at a point of the plane; the height there
-  double shape(const Point& p, double* phi) const {
+  double shape(const PlanePoint& p, double* phi) const {
     if (count == 3) {
       const double whole = side(corner[0], corner[1], corner[2]);
       phi[1] = side(corner[2], corner[0], p) / whole,
@@ -75,7 +75,7 @@ struct Projection {
         bilinear(r, s, phi);
         double ex = p.x, ey = p.y;
         for (int a = 0; a < 4; ++a) ex -= phi[a] * corner[a].x, ey -= phi[a] * corner[a].y;
-        const Point t1 = edge(1, 0, 2, 3, s), t2 = edge(3, 0, 2, 1, r);
+        const PlanePoint t1 = edge(1, 0, 2, 3, s), t2 = edge(3, 0, 2, 1, r);
         const double det = t1.x * t2.y - t1.y * t2.x;
         if (det == 0) break;
         const double dr = (t2.y * ex - t2.x * ey) / det, ds = (t1.x * ey - t1.y * ex) / det;
@@ -94,22 +94,22 @@ struct Projection {
     phi[2] = 0.25 * (1 + r) * (1 + s), phi[3] = 0.25 * (1 - r) * (1 + s);
   }
   // tangent: mean of the edges a-b and c-d at the other coordinate q
-  Point edge(int a, int b, int c, int d, double q) const {
+  PlanePoint edge(int a, int b, int c, int d, double q) const {
     return {0.25 * ((corner[a].x - corner[b].x) * (1 - q) + (corner[c].x - corner[d].x) * (1 + q)),
             0.25 * ((corner[a].y - corner[b].y) * (1 - q) + (corner[c].y - corner[d].y) * (1 + q))};
   }
 };
 
 // overlap of two convex polygons (Sutherland and Hodgman); at most 8 corners
-inline int clip(const Projection& a, const Projection& b, Point* out) {
-  Point list[2][16];
+inline int clip(const Projection& a, const Projection& b, PlanePoint* out) {
+  PlanePoint list[2][16];
   int count = a.count, from = 0;
   for (int i = 0; i < count; ++i) list[0][i] = a.at(i);
   for (int k = 0; k < b.count && count > 0; ++k, from = 1 - from) {
-    const Point &u = b.at(k), &v = b.at((k + 1) % b.count);
+    const PlanePoint &u = b.at(k), &v = b.at((k + 1) % b.count);
     int n = 0;
     for (int i = 0; i < count; ++i) {
-      const Point &p = list[from][i], &q = list[from][(i + 1) % count];
+      const PlanePoint &p = list[from][i], &q = list[from][(i + 1) % count];
       const double dp = side(u, v, p), dq = side(u, v, q);
       if (dp >= 0) list[1 - from][n++] = p;
       if ((dp > 0 && dq < 0) || (dp < 0 && dq > 0)) {
@@ -135,16 +135,20 @@ inline SegmentOverlap segment_overlap(const Vec3d* X, bool triangle_x, const Vec
   const Vec3d axis = std::abs(n.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
   const Vec3d e1 = contact_detail::unit(cross(axis, n)), e2 = cross(n, e1);
   const Projection p(X, triangle_x, Y[0], e1, e2, n), q(Y, triangle_y, Y[0], e1, e2, n);
-  Point polygon[16];
+  // apart everywhere
+  if (*std::min_element(p.height, p.height + p.count) >
+      thickness + *std::max_element(q.height, q.height + q.count))
+    return result;
+  PlanePoint polygon[16];
   const int count = clip(p, q, polygon);
   for (int k = 2; k < count; ++k) {
-    const Point &a = polygon[0], &b = polygon[k - 1], &c = polygon[k];
+    const PlanePoint &a = polygon[0], &b = polygon[k - 1], &c = polygon[k];
     const double third = side(a, b, c) / 6;
     if (!(third > 0)) continue;
     for (int i = 0; i < 3; ++i) {
       const double wa = i == 0 ? 2.0 / 3 : 1.0 / 6, wb = i == 1 ? 2.0 / 3 : 1.0 / 6,
                    wc = i == 2 ? 2.0 / 3 : 1.0 / 6;
-      const Point at{wa * a.x + wb * b.x + wc * c.x, wa * a.y + wb * b.y + wc * c.y};
+      const PlanePoint at{wa * a.x + wb * b.x + wc * c.x, wa * a.y + wb * b.y + wc * c.y};
       double phi[4], psi[4];
       const double z1 = p.shape(at, phi), z2 = q.shape(at, psi);
       const double whole = z2 + thickness - z1;

@@ -140,18 +140,28 @@ void SegmentPass::search(const State& state) {
   remember(state, outer_reference_);
 }
 
-// pairs that can touch before the next cull
+// pairs that can touch before the next cull; none goes deeper than the deepest so far without being
+// seen first
 void SegmentPass::cull(const State& state) {
   active_.clear();
+  auto overlap_within = [&](const ContactSegment& a, const ContactSegment& b, double margin_a,
+                            double margin_b) {
+    return overlap(box_of(state, a, margin_a + 0.5 * inner_skin_),
+                   box_of(state, b, margin_b + 0.5 * inner_skin_));
+  };
+  auto usual = [&](const ContactSegment& s) {
+    return std::min(margin_of(s), s.half_thickness + 0.5 * penetration_.depth);
+  };
   for (int p = 0; p < int(pairs_.size()); ++p) {
     const ContactSegment &a = first_.segments[pairs_[p].first],
                          &b = second_.segments[pairs_[p].second];
-    const bool near = overlap(box_of(state, a, margin_of(a) + 0.5 * inner_skin_),
-                              box_of(state, b, margin_of(b) + 0.5 * inner_skin_));
-    if (near)
+    const bool near = overlap_within(a, b, usual(a), usual(b)) ||
+                      (pairs_[p].touching && overlap_within(a, b, margin_of(a), margin_of(b)));
+    if (near) {
       active_.push_back(p);
-    else
+    } else {
       pairs_[p].touching = false;
+    }
   }
   remember(state, inner_reference_);
 }
