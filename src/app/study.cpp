@@ -58,8 +58,38 @@ void add_validate(CLI::App& app, StudyCommands& c) {
   });
 }
 
+void add_plan(CLI::App& app, StudyCommands& c) {
+  auto* command =
+      app.add_subcommand("study", "Run the rows of a parameter study that have no result yet");
+  command->add_option("plan", c.study.plan, "plan.toml")->required()->check(CLI::ExistingFile);
+  command->add_option("--out", c.study.out,
+                      "folder for runs, table and plots; out/studies/NAME if not given");
+  command->add_option("--resolution", c.study.resolution, "of generated bodies")
+      ->check(CLI::IsMember({"coarse", "standard", "fine"}));
+  command->add_option("--jobs", c.study.jobs, "runs side by side")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option("--threads", c.study.threads, "threads of each run")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option("--set", c.study_paths,
+                      "NAME=FOLDER for {NAME} in the file names of the plan");
+  command->add_option("--row", c.study.row, "only this row, from 1, without table")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--slurm", c.study.slurm, "write a job array for a cluster instead of running");
+  command->callback([&c] {
+    c.study.paths = paths_of(c.study_paths);
+    for (const auto& [name, folder] : c.study.paths)
+      c.study.set_arguments += " --set \"" + name + "=" + folder + "\"";
+    throw CLI::RuntimeError(study::run_study(c.study));
+  });
+}
+
 }  // namespace
 
-void add_study(CLI::App& app, StudyCommands& commands) { add_validate(app, commands); }
+void add_study(CLI::App& app, StudyCommands& commands) {
+  add_validate(app, commands);
+  add_plan(app, commands);
+}
 
 }  // namespace fabrica

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "study/campaign.h"
 #include "study/validate.h"
 
 namespace CLI {
@@ -15,6 +16,8 @@ struct StudyCommands {
   study::ValidateOptions validate;
   std::vector<std::string> validate_paths;
   bool table = false;
+  study::StudyOptions study;
+  std::vector<std::string> study_paths;
 };
 void add_study(CLI::App& app, StudyCommands& commands);
 

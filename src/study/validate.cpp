@@ -1,20 +1,18 @@
 #include "study/validate.h"
 
-#include <fmt/chrono.h>
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <ctime>
 #include <filesystem>
 
 #include "study/assets.h"
 #include "study/case_page.h"
 #include "study/compare.h"
-#include "study/deck_source.h"
 #include "study/error.h"
 #include "study/fit.h"
 #include "study/process.h"
 #include "study/rate_curve.h"
+#include "study/run_setup.h"
 
 namespace fabrica::study {
 namespace {
@@ -33,33 +31,6 @@ struct Work {
   bool must_run = false;
 };
 
-std::string now() { return fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr))); }
-
-std::string absolute(const std::string& folder, const std::string& path) {
-  return fs::absolute(fs::path(path).is_absolute() ? fs::path(path) : fs::path(folder) / path)
-      .lexically_normal()
-      .string();
-}
-
-// Makes a body with `fabrica body`; returns its deck.
-std::string generate_body(const Work& w) {
-  const std::string file = w.folder + "/body.k";
-  Command command{{this_program(), "body"}, w.folder + "/body.log"};
-  for (const auto& [key, value] : w.c.body) {
-    command.arguments.push_back("--" + key);
-    command.arguments.push_back(value);
-  }
-  if (!w.resolution.empty())
-    command.arguments.insert(command.arguments.end(), {"--resolution", w.resolution});
-  command.arguments.insert(command.arguments.end(), {"--out", file});
-  run_all({command}, 1, [&](std::size_t, const Ended& e) {
-    if (e.status != 0)
-      throw StudyError(w.c.file, 0, "body", "the body cannot be made: " + last_line(command.log),
-                       "Try `fabrica body` with the same options");
-  });
-  return file;
-}
-
 // Finds or writes the deck and its fingerprint, and sees whether the result is up to date.
 void prepare(Work& w, const ValidateOptions& o) {
   fs::create_directories(w.folder);
@@ -72,46 +43,11 @@ void prepare(Work& w, const ValidateOptions& o) {
   }
   if (!w.c.body.empty()) w.resolution = o.resolution.empty() ? "standard" : o.resolution;
   w.outcome.resolution = w.resolution;
-  std::vector<std::string> includes;
-  if (!w.c.body.empty()) {
-    includes.push_back(absolute(".", generate_body(w)));
-    if (!w.c.loads.empty()) includes.push_back(absolute(w.c.folder, w.c.loads));
-  } else {
-    w.deck = absolute(w.c.folder, expand(w.c.deck, o.paths, w.c.file, 0));
-  }
-  if (!w.c.body.empty() || !w.c.parameters.empty()) {
-    if (includes.empty()) includes.push_back(w.deck);
-    w.deck = w.folder + "/main.k";
-    write_main(w.deck, w.c.parameters, includes);
-  }
-  const DeckContent content = inspect_deck(w.deck);
-  for (const auto& [name, value] : w.c.parameters) need_parameter(content, name, w.c.file, 0);
-  w.files = content.files;
-  w.outcome.fingerprint = fingerprint(
-      content.hash,
-      {fmt::format("{}", w.c.end_time), w.c.allow_unsupported ? "allow" : "", w.resolution});
-  const std::string record = read_file(w.folder + "/run.json");
-  const ordered_json run = ordered_json::parse(record.empty() ? "{}" : record, nullptr, false);
-  w.must_run = !run.is_object() || run.value("fingerprint", "") != w.outcome.fingerprint ||
-               run.value("status", -1) != 0;
-}
-
-Command run_command_of(const Work& w, int threads) {
-  Command c{{this_program(), "run", w.deck, "--out", w.folder + "/result", "--threads",
-             std::to_string(threads)},
-            w.folder + "/run.log"};
-  if (w.c.end_time > 0)
-    c.arguments.insert(c.arguments.end(), {"--until", fmt::format("{}", w.c.end_time)});
-  if (w.c.allow_unsupported) c.arguments.push_back("--allow-unsupported");
-  return c;
-}
-
-void record_run(const Work& w, const Ended& e) {
-  const ordered_json run{{"fingerprint", w.outcome.fingerprint},
-                         {"status", e.status},
-                         {"seconds", e.seconds},
-                         {"finished", now()}};
-  write_file(w.folder + "/run.json", run.dump(2) + "\n");
+  const RunSetup setup = set_up_run(w.c, w.folder, w.resolution, o.paths);
+  w.deck = setup.deck;
+  w.files = setup.content.files;
+  w.outcome.fingerprint = setup.fingerprint;
+  w.must_run = !up_to_date(w.folder, setup.fingerprint);
 }
 
 // runs what is not up to date, side by side
@@ -120,16 +56,14 @@ void run_cases(std::vector<Work>& all, const ValidateOptions& o) {
   std::vector<Command> commands;
   for (Work& w : all) {
     if (!w.must_run) continue;
-    // what an older run left must not be taken for this one's
-    fs::remove_all(w.folder + "/result");
-    fs::remove(w.folder + "/run.json");
+    clear_run(w.folder);
     due.push_back(&w);
-    commands.push_back(run_command_of(w, o.threads));
+    commands.push_back(run_command(w.c, w.deck, w.folder, o.threads));
     fmt::print("{}: runs ({})\n", w.c.name, w.deck);
   }
   std::fflush(stdout);
   run_all(commands, o.jobs, [&](std::size_t i, const Ended& e) {
-    record_run(*due[i], e);
+    write_record(due[i]->folder, {due[i]->outcome.fingerprint, time_of_day(), e.status, e.seconds});
     fmt::print("{}: ended with status {} after {:.1f} s\n", due[i]->c.name, e.status, e.seconds);
     std::fflush(stdout);
   });
@@ -137,20 +71,19 @@ void run_cases(std::vector<Work>& all, const ValidateOptions& o) {
 
 // what the run left behind: times, summary, energies
 void read_run(Work& w, Channels& channels, PageExtras& extras) {
-  const std::string record = read_file(w.folder + "/run.json");
-  if (record.empty())
+  const RunRecord run = read_record(w.folder);
+  if (run.status < 0)
     throw StudyError(w.c.file, 0, "", "has no result", "Run it without --compare-only");
-  const ordered_json run = ordered_json::parse(record);
-  w.outcome.run_seconds = run.at("seconds");
-  w.outcome.finished = run.at("finished");
-  if (run.at("fingerprint") != w.outcome.fingerprint)
+  w.outcome.run_seconds = run.seconds;
+  w.outcome.finished = run.finished;
+  if (run.fingerprint != w.outcome.fingerprint)
     throw StudyError(w.c.file, 0, "", "the result is not up to date",
                      "Run it without --compare-only");
   const std::string summary = read_file(w.folder + "/result/summary.json");
   if (!summary.empty()) w.outcome.summary = ordered_json::parse(summary);
-  if (run.at("status") != 0)
+  if (run.status != 0)
     throw StudyError(w.deck, 0, "",
-                     fmt::format("the run ended with status {}: {}", int(run.at("status")),
+                     fmt::format("the run ended with status {}: {}", run.status,
                                  last_line(w.folder + "/run.log")),
                      "Read " + w.folder + "/run.log");
   extras.files = w.files;
@@ -216,7 +149,7 @@ void compare(Work& w) {
       read_run(w, channels, extras);
       draw_picture(w, extras);
     } else {
-      o.finished = now();
+      o.finished = time_of_day();
     }
     for (const SignalSpec& s : w.c.signals) o.signals.push_back(compare_signal(s, channels, w.c));
     std::map<std::string, double> fits;
