@@ -85,9 +85,9 @@ std::vector<View> views(const Body& body) {
                 !starts(b.mesh.name, {"femur", "tibia", "fibula", "patella"});
        }},
       {"skull", "1,-0.8,0.25", 620, 620, named({"skull", "mandible"}, false)},
-      {"skull_cut", "left", 560, 560, named({"skull", "mandible"}, false), true, right_half, true},
+      {"skull_cut", "right", 560, 560, named({"skull", "mandible"}, false), true, right_half, true},
       {"vertebra_pair", "1,-0.8,0.5", 620, 620, named({"L3", "L4"}, false)},
-      {"vertebra_pair_cut", "left", 620, 560, named({"L3", "L4"}, false), true, right_half, true},
+      {"vertebra_pair_cut", "right", 620, 560, named({"L3", "L4"}, false), true, right_half, true},
   };
 }
 
