@@ -43,6 +43,20 @@ std::string located(const InjuryCommand& c, const std::string& where) {
   return where;
 }
 
+// Histories of a run are written at the cycle next to each output time: read at their mean step.
+void even_out(const std::string& role, Signal& s) {
+  if (role.ends_with(".strain") || role.ends_with(".stress")) return;  // tables, not histories
+  try {
+    sample_interval(s);
+  } catch (const SignalError& e) {
+    if (e.name() != "not-uniform") return;  // reported by the measures
+    s = resampled(s, (s.x.back() - s.x.front()) / double(s.size() - 1));
+    fmt::print(stderr,
+               "note: {} is not sampled at a constant step; it is read at its mean step {:.6g}\n",
+               role, s.x[1] - s.x[0]);
+  }
+}
+
 Channels read_channels(const InjuryCommand& c) {
   Channels channels;
   for (const std::string& input : c.inputs) {
@@ -62,6 +76,7 @@ Channels read_channels(const InjuryCommand& c) {
         found != channels.end() && found->second.unit.empty())
       found->second.unit = unit;
   }
+  for (auto& [role, s] : channels) even_out(role, s);
   if (!c.time_unit.empty())
     for (auto& [role, s] : channels)
       if (s.x_unit.empty()) s.x_unit = c.time_unit;
