@@ -84,7 +84,8 @@ TEST_CASE("V12: spinning bricks, tetrahedra and plates") {
            {double(body.formulation), stress, momentum() / L - 1, energy() / K - 1});
     CHECK(stress < 1e-6);
     CHECK(std::abs(momentum() / L - 1) < 1e-6);
-    CHECK(std::abs(energy() / K - 1) < tolerance(1e-6, 1e-5));  // float adds rounding, up to 8e-6
+    // the plate of two triangles loses 8e-6 in double too; rounding in float adds up to 4e-6
+    CHECK(std::abs(energy() / K - 1) < tolerance(body.formulation == 4 ? 1e-5 : 1e-6, 1e-5));
   }
 }
 
@@ -244,8 +245,8 @@ TEST_CASE("V62: two bars collide and exchange their velocities") {
   const auto free = [](int, int, int) { return 0; };
   const Grid a = bricks(
       deck, 1, 1, n,
-      [side](int i, int j, int k) { return Vec3d(0.1 + side * i, 0.1 + side * j, k - 100 - 1e-4); }, free,
-      1);
+      [side](int i, int j, int k) { return Vec3d(0.1 + side * i, 0.1 + side * j, k - 100 - 1e-4); },
+      free, 1);
   const Grid b = bricks(
       deck, 1, 1, n, [](int i, int j, int k) { return Vec3d(i, j, k); }, free, 2);
   deck.key("INITIAL_VELOCITY_GENERATION").card(1, 2, 0, 0, 0, v).card(0);
