@@ -1,11 +1,12 @@
 #include "base/diagnostics.h"
 
-#include <algorithm>
-
 namespace fabrica {
 
 int Diagnostics::count(Severity s) const {
-  return int(std::count_if(list_.begin(), list_.end(), [s](const Diagnostic& d) { return d.severity == s; }));
+  int cases = 0;
+  for (const Diagnostic& d : list_)
+    if (d.severity == s) cases += d.cases;
+  return cases;
 }
 
 std::string Diagnostics::format(const Diagnostic& d) const {

@@ -44,7 +44,8 @@ Places places_of(const CardSchema& card, Format format) {
 
 class CardReader {
  public:
-  CardReader(Context& context, Block& block, const KeywordSchema& schema, const std::vector<std::string>& options)
+  CardReader(Context& context, Block& block, const KeywordSchema& schema,
+             const std::vector<std::string>& options)
       : context_(context), block_(block), schema_(schema), options_(options) {
     quiet_ = schema.support != Support::full;
     for (const CardSchema& c : schema.cards) {
@@ -75,12 +76,9 @@ class CardReader {
       if (map)
         context_.transformations[card.id("tranid")] = *map;
       else
-        context_.report(Severity::unsupported, "bad-transformation", card.where, block_.keyword, "option", problem,
-                        "Use TRANSL, ROTATE, SCALE, MIRROR and POINT");
+        context_.report(Severity::unsupported, "bad-transformation", card.where, block_.keyword,
+                        "option", problem, "Use TRANSL, ROTATE, SCALE, MIRROR and POINT");
     }
-    if (schema_.name == "NODE_TRANSFORM" && card.row_count() > 0)
-      context_.report(Severity::unsupported, "unsupported-keyword", card.where, block_.keyword, "",
-                      "node sets are not moved", "Move the nodes with *INCLUDE_TRANSFORM");
     context_.builder.add_card(std::move(card));
   }
 
@@ -99,7 +97,9 @@ class CardReader {
 
   // one group of cards; false if it ended too early
   bool read_group(Card& card) {
-    const auto has = [&](const char* o) { return std::find(options_.begin(), options_.end(), o) != options_.end(); };
+    const auto has = [&](const char* o) {
+      return std::find(options_.begin(), options_.end(), o) != options_.end();
+    };
     if (has("TITLE") && !own_title_) {
       if (!block_.next()) return truncated("the title line");
       card.title = trimmed(block_.line());
@@ -118,7 +118,8 @@ class CardReader {
       if (!applies(c, card)) continue;
       if (!block_.next()) {
         if (c.optional) continue;
-        return truncated(c.fields.empty() ? "a line of text" : "the line that starts with " + c.fields[0].name);
+        return truncated(c.fields.empty() ? "a line of text"
+                                          : "the line that starts with " + c.fields[0].name);
       }
       if (!c.fields.empty() && c.fields[0].name == "ampersand" && !block_.line().starts_with('&')) {
         block_.again();
@@ -138,15 +139,16 @@ class CardReader {
     try {
       return evaluate_condition(c.condition, card) != 0;
     } catch (const std::exception& e) {
-      context_.error("bad-schema", block_.where, block_.keyword, "", e.what(), "Report this keyword to the developers");
+      context_.error("bad-schema", block_.where, block_.keyword, "", e.what(),
+                     "Report this keyword to the developers");
       return false;
     }
   }
 
   bool truncated(const std::string& what) {
     if (!quiet_)
-      context_.error("truncated-card", block_.here(), block_.keyword, "", "the block ends before " + what,
-                     "Give all lines of the keyword");
+      context_.error("truncated-card", block_.here(), block_.keyword, "",
+                     "the block ends before " + what, "Give all lines of the keyword");
     return false;
   }
 
@@ -215,7 +217,8 @@ class CardReader {
   }
 
   // the value of a field, checked against its schema; value keeps the default if the field is blank
-  void convert(const FieldSchema& f, std::string_view source, double& value, std::string& text, bool& given) {
+  void convert(const FieldSchema& f, std::string_view source, double& value, std::string& text,
+               bool& given) {
     if (f.type == FieldType::text) {
       text = source;
       if (source.size() > 1 && source[0] == '&' && f.width <= 20)
@@ -228,7 +231,8 @@ class CardReader {
         const auto r = source.empty() ? std::nullopt : parse_real(source);
         given = r.has_value();
         number = r.value_or(0);
-      } else if (!context_.number(block_, block_.here(), f.name, source, f.type == FieldType::integer, number, given)) {
+      } else if (!context_.number(block_, block_.here(), f.name, source,
+                                  f.type == FieldType::integer, number, given)) {
         given = false;
         return;
       }
@@ -242,28 +246,33 @@ class CardReader {
   void check(const FieldSchema& f, double value, const std::string& text, bool given) {
     if (!given) {
       if (f.required || (f.exclusive_minimum && f.default_value <= f.minimum))
-        context_.error("missing-field", block_.here(), block_.keyword, f.name, "a value is required",
+        context_.error("missing-field", block_.here(), block_.keyword, f.name,
+                       "a value is required",
                        "Give the field; it starts in column " + std::to_string(f.column + 1));
       return;
     }
     if (f.type != FieldType::text) {
       const bool low = f.exclusive_minimum ? value <= f.minimum : value < f.minimum;
       if (low || value > f.maximum) {
-        std::string range = f.exclusive_minimum ? "above " + number_text(f.minimum)
-                            : std::isfinite(f.minimum) ? "from " + number_text(f.minimum) : std::string();
-        if (std::isfinite(f.maximum)) range += (range.empty() ? "up to " : " up to ") + number_text(f.maximum);
+        std::string range = f.exclusive_minimum        ? "above " + number_text(f.minimum)
+                            : std::isfinite(f.minimum) ? "from " + number_text(f.minimum)
+                                                       : std::string();
+        if (std::isfinite(f.maximum))
+          range += (range.empty() ? "up to " : " up to ") + number_text(f.maximum);
         context_.error("value-out-of-range", block_.here(), block_.keyword, f.name,
-                       number_text(value) + " is outside the range, expected a value " + range, "Correct the value");
+                       number_text(value) + " is outside the range, expected a value " + range,
+                       "Correct the value");
       }
     }
     if (f.support == Support::full) return;
     if (f.type != FieldType::text && (value == f.default_value || is_supported(f, value))) return;
     const bool ignored = f.support == Support::ignored;
-    context_.report(ignored ? Severity::ignored : Severity::unsupported,
-                    ignored ? "ignored-field" : "unsupported-field", block_.here(), block_.keyword, f.name,
-                    (f.type == FieldType::text ? text : number_text(value)) +
-                        (ignored ? " has no effect here" : " asks for something that is not computed"),
-                    ignored ? "" : "Leave the field at its default");
+    context_.report(
+        ignored ? Severity::ignored : Severity::unsupported,
+        ignored ? "ignored-field" : "unsupported-field", block_.here(), block_.keyword, f.name,
+        (f.type == FieldType::text ? text : number_text(value)) +
+            (ignored ? " has no effect here" : " asks for something that is not computed"),
+        ignored ? "" : "Leave the field at its default");
   }
 
   static bool is_supported(const FieldSchema& f, double value) {
@@ -282,18 +291,20 @@ class CardReader {
   void surplus_text() {
     if (quiet_ || texts_.surplus.empty()) return;
     if (texts_.surplus.find_first_not_of("0., \t") == std::string_view::npos) return;
-    context_.report(Severity::warning, "surplus-field", block_.here(), block_.keyword, "",
-                    "\"" + std::string(texts_.surplus.substr(0, 40)) + "\" stands behind the last known field",
-                    "Remove it, or check the columns");
+    context_.report(
+        Severity::warning, "surplus-field", block_.here(), block_.keyword, "",
+        "\"" + std::string(texts_.surplus.substr(0, 40)) + "\" stands behind the last known field",
+        "Remove it, or check the columns");
   }
 
   void surplus_lines() {
     while (block_.next()) {
       const std::string_view text = trimmed(block_.line());
       if (quiet_ || text.find_first_not_of("0., \t") == std::string_view::npos) continue;
-      context_.report(Severity::unsupported, "surplus-line", block_.here(), block_.keyword, "",
-                      "a line follows the last known card: \"" + std::string(text.substr(0, 40)) + "\"",
-                      "Remove it if it only holds defaults");
+      context_.report(
+          Severity::unsupported, "surplus-line", block_.here(), block_.keyword, "",
+          "a line follows the last known card: \"" + std::string(text.substr(0, 40)) + "\"",
+          "Remove it if it only holds defaults");
     }
   }
 
@@ -303,22 +314,24 @@ class CardReader {
   const std::vector<std::string>& options_;
   std::vector<Places> places_;
   FieldTexts texts_;
-  bool quiet_ = false;      // the keyword is ignored or unsupported as a whole: its fields are not judged
+  bool quiet_ =
+      false;  // the keyword is ignored or unsupported as a whole: its fields are not judged
   bool own_title_ = false;  // the schema says itself where the title stands
 };
 
 }  // namespace
 
-void read_cards(Context& context, Block& block, const KeywordSchema& schema, const std::vector<std::string>& options) {
+void read_cards(Context& context, Block& block, const KeywordSchema& schema,
+                const std::vector<std::string>& options) {
   if (schema.support != Support::full) {
     const bool ignored = schema.support == Support::ignored;
     context.report(ignored ? Severity::ignored : Severity::unsupported,
-                   ignored ? "ignored-keyword" : "unsupported-keyword", block.where, block.keyword, "",
+                   ignored ? "ignored-keyword" : "unsupported-keyword", block.where, block.keyword,
+                   "",
                    schema.reason.empty() ? "the keyword is known but not computed" : schema.reason,
                    ignored ? "" : "Remove the keyword if the run can do without it");
     if (schema.cards.empty()) return block.skip();
   }
-  if (schema.name == "CONTROL_TERMINATION") context.terminated = true;
   CardReader(context, block, schema, options).read();
 }
 

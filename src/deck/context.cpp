@@ -13,7 +13,8 @@ std::string shown(std::string_view text) { return "\"" + std::string(text.substr
 
 }  // namespace
 
-void cut_fields(std::string_view line, const std::vector<FieldPlace>& places, int comma_limit, FieldTexts& out) {
+void cut_fields(std::string_view line, const std::vector<FieldPlace>& places, int comma_limit,
+                FieldTexts& out) {
   out.text.assign(places.size(), {});
   out.surplus = {};
   const std::size_t comma = line.find(',');
@@ -33,7 +34,8 @@ void cut_fields(std::string_view line, const std::vector<FieldPlace>& places, in
     if (column >= line.size()) return;
     out.text[i] = trimmed(line.substr(column, std::size_t(places[i].width)));
   }
-  const std::size_t end = places.empty() ? 0 : std::size_t(places.back().column + places.back().width);
+  const std::size_t end =
+      places.empty() ? 0 : std::size_t(places.back().column + places.back().width);
   if (end < line.size()) out.surplus = trimmed(line.substr(end));
 }
 
@@ -62,9 +64,10 @@ void Block::skip() {
   }
 }
 
-void Context::report(Severity severity, const std::string& name, Location where, const std::string& keyword,
-                     const std::string& field, std::string message, std::string remedy) {
-  Tally& tally = tallies_[{name, keyword}];
+void Context::report(Severity severity, const std::string& name, Location where,
+                     const std::string& keyword, const std::string& field, std::string message,
+                     std::string remedy) {
+  Tally& tally = tallies_[{name, keyword, field}];
   tally.severity = severity;
   tally.last = where;
   if (++tally.count <= most_reports)
@@ -74,24 +77,29 @@ void Context::report(Severity severity, const std::string& name, Location where,
 void Context::summarise_rest() {
   for (const auto& [key, tally] : tallies_)
     if (tally.count > most_reports)
-      diagnostics.add({tally.severity, key.first, tally.last, key.second, "",
-                       std::to_string(tally.count - most_reports) + " more of the same kind, the last here", ""});
+      diagnostics.add(
+          {tally.severity, key[0], tally.last, key[1], key[2],
+           std::to_string(tally.count - most_reports) + " more of the same kind, the last here", "",
+           tally.count - most_reports});
 }
 
-bool Context::parameter(const Block& block, Location where, const std::string& field, std::string_view text,
-                        bool integer, double& value) {
+bool Context::parameter(const Block& block, Location where, const std::string& field,
+                        std::string_view text, bool integer, double& value) {
   const bool minus = text[0] == '-';
   std::string_view name = trimmed(text.substr(minus ? 2 : 1));
   const ParameterValue* found = parameters.find(name);
   if (!found) {
-    error("undefined-parameter", where, block.keyword, field, "parameter " + std::string(name) + " is not defined here",
-          "Define it with *PARAMETER before its first use, in this file or in one that includes it");
+    error(
+        "undefined-parameter", where, block.keyword, field,
+        "parameter " + std::string(name) + " is not defined here",
+        "Define it with *PARAMETER before its first use, in this file or in one that includes it");
     return false;
   }
   if (const auto* words = std::get_if<std::string>(found)) {
     const auto real = parse_real(*words);
     if (!real) {
-      error("bad-number", where, block.keyword, field, "parameter " + std::string(name) + " is a text, not a number",
+      error("bad-number", where, block.keyword, field,
+            "parameter " + std::string(name) + " is a text, not a number",
             "Declare it with R or I");
       return false;
     }
@@ -105,12 +113,13 @@ bool Context::parameter(const Block& block, Location where, const std::string& f
   return true;
 }
 
-bool Context::number(const Block& block, Location where, const std::string& field, std::string_view text, bool integer,
-                     double& value, bool& given) {
+bool Context::number(const Block& block, Location where, const std::string& field,
+                     std::string_view text, bool integer, double& value, bool& given) {
   given = false;
   if (text.empty()) return true;
   given = true;
-  if (text[0] == '&' || text.starts_with("-&")) return parameter(block, where, field, text, integer, value);
+  if (text[0] == '&' || text.starts_with("-&"))
+    return parameter(block, where, field, text, integer, value);
   if (integer) {
     if (const auto i = parse_integer(text)) {
       value = double(*i);

@@ -18,16 +18,23 @@ bool is_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c =
 
 using OneArgument = double (*)(double);
 const std::map<std::string, OneArgument, std::less<>>& functions() {
-  static const std::map<std::string, OneArgument, std::less<>> list = {
-      {"abs", [](double a) { return std::abs(a); }},   {"sqrt", [](double a) { return std::sqrt(a); }},
-      {"exp", [](double a) { return std::exp(a); }},   {"log", [](double a) { return std::log(a); }},
-      {"ln", [](double a) { return std::log(a); }},    {"log10", [](double a) { return std::log10(a); }},
-      {"sin", [](double a) { return std::sin(a); }},   {"cos", [](double a) { return std::cos(a); }},
-      {"tan", [](double a) { return std::tan(a); }},   {"asin", [](double a) { return std::asin(a); }},
-      {"acos", [](double a) { return std::acos(a); }}, {"atan", [](double a) { return std::atan(a); }},
-      {"sinh", [](double a) { return std::sinh(a); }}, {"cosh", [](double a) { return std::cosh(a); }},
-      {"tanh", [](double a) { return std::tanh(a); }}, {"aint", [](double a) { return std::trunc(a); }},
-      {"anint", [](double a) { return std::round(a); }}};
+  static const std::map<std::string, OneArgument, std::less<>> list = {{"abs", [](double a) { return std::abs(a); }},
+                                                                       {"sqrt", [](double a) { return std::sqrt(a); }},
+                                                                       {"exp", [](double a) { return std::exp(a); }},
+                                                                       {"log", [](double a) { return std::log(a); }},
+                                                                       {"ln", [](double a) { return std::log(a); }},
+                                                                       {"log10", [](double a) { return std::log10(a); }},
+                                                                       {"sin", [](double a) { return std::sin(a); }},
+                                                                       {"cos", [](double a) { return std::cos(a); }},
+                                                                       {"tan", [](double a) { return std::tan(a); }},
+                                                                       {"asin", [](double a) { return std::asin(a); }},
+                                                                       {"acos", [](double a) { return std::acos(a); }},
+                                                                       {"atan", [](double a) { return std::atan(a); }},
+                                                                       {"sinh", [](double a) { return std::sinh(a); }},
+                                                                       {"cosh", [](double a) { return std::cosh(a); }},
+                                                                       {"tanh", [](double a) { return std::tanh(a); }},
+                                                                       {"aint", [](double a) { return std::trunc(a); }},
+                                                                       {"anint", [](double a) { return std::round(a); }}};
   return list;
 }
 
@@ -39,7 +46,8 @@ class Expression {
   std::optional<ParameterValue> whole() {
     ParameterValue value = sum();
     skip();
-    if (at_ < text_.size()) fail("text after the expression: " + std::string(text_.substr(at_, 20)));
+    if (at_ < text_.size())
+      fail("text after the expression: " + std::string(text_.substr(at_, 20)));
     if (!problem.empty()) return std::nullopt;
     if (!std::isfinite(as_real(value))) return fail("the value is not finite"), std::nullopt;
     return value;
@@ -139,7 +147,8 @@ class Expression {
     if (!reference && (std::isdigit(static_cast<unsigned char>(c)) || c == '.')) return number();
     const std::size_t start = at_;
     while (at_ < text_.size() && is_name(text_[at_])) ++at_;
-    if (start == at_) return fail(c ? std::string("unexpected ") + c : "the expression ends too early");
+    if (start == at_)
+      return fail(c ? std::string("unexpected ") + c : "the expression ends too early");
     const std::string name = lower(text_.substr(start, at_ - start));
     if (!reference && peek() == '(') return call(name);
     if (const ParameterValue* v = table_.find(name)) {
@@ -155,7 +164,8 @@ class Expression {
     while (end < text_.size()) {
       const char c = text_[end];
       const bool exponent = c == 'e' || c == 'E' || c == 'd' || c == 'D';
-      if (exponent && end + 1 < text_.size() && (text_[end + 1] == '+' || text_[end + 1] == '-')) ++end;
+      if (exponent && end + 1 < text_.size() && (text_[end + 1] == '+' || text_[end + 1] == '-'))
+        ++end;
       if (exponent || c == '.') real = true;
       if (!exponent && c != '.' && !std::isdigit(static_cast<unsigned char>(c))) break;
       ++end;
@@ -195,7 +205,8 @@ class Expression {
       return best;
     }
     if (a.size() == 2 && name == "atan2") return std::atan2(as_real(a[0]), as_real(a[1]));
-    if (a.size() == 2 && name == "sign") return std::copysign(std::abs(as_real(a[0])), as_real(a[1]));
+    if (a.size() == 2 && name == "sign")
+      return std::copysign(std::abs(as_real(a[0])), as_real(a[1]));
     if (a.size() == 2 && name == "mod") {
       if (as_real(a[1]) == 0) return fail("division by zero");
       if (integers(a[0], a[1])) {
@@ -224,19 +235,23 @@ double as_real(const ParameterValue& value) {
 const ParameterValue* ParameterTable::find(std::string_view name) const {
   const std::string key = lower(name);
   for (auto scope = scopes_.rbegin(); scope != scopes_.rend(); ++scope)
-    if (const auto it = scope->find(key); it != scope->end()) return &it->second;
+    if (const auto it = scope->find(key); it != scope->end()) return &it->second.value;
   return nullptr;
 }
 
-bool ParameterTable::define(std::string_view name, ParameterValue value, bool local) {
+bool ParameterTable::define(std::string_view name, ParameterValue value, bool local,
+                            bool is_mutable) {
   auto& scope = local ? scopes_.back() : scopes_.front();
-  const auto [it, fresh] = scope.emplace(lower(name), value);
+  const auto [it, fresh] = scope.emplace(lower(name), Entry{value, is_mutable});
   if (fresh) return false;
-  if (duplication == Duplication::warn_replace || duplication == Duplication::replace) it->second = std::move(value);
-  return true;
+  const bool free = it->second.is_mutable;
+  if (free || duplication == Duplication::warn_replace || duplication == Duplication::replace)
+    it->second.value = std::move(value);
+  return !free;
 }
 
-std::optional<ParameterValue> evaluate_expression(std::string_view text, const ParameterTable& table,
+std::optional<ParameterValue> evaluate_expression(std::string_view text,
+                                                  const ParameterTable& table,
                                                   std::string& problem) {
   Expression expression(text, table);
   auto value = expression.whole();

@@ -19,24 +19,32 @@ enum class Duplication { warn_keep = 1, warn_replace = 2, error_keep = 3, replac
 class ParameterTable {
  public:
   ParameterTable() : scopes_(1) {}
-  Duplication duplication = Duplication::warn_keep;
+  std::optional<Duplication> duplication;  // as chosen; warn_keep where nothing is
 
   void open_scope() { scopes_.emplace_back(); }
   void close_scope() { scopes_.pop_back(); }
   // the innermost value of a name (without &), or null
   const ParameterValue* find(std::string_view name) const;
-  // true if the name was already defined in its scope; what then happens follows `duplication`
-  bool define(std::string_view name, ParameterValue value, bool local);
+  // True if the name was already defined in its scope; what then happens follows `duplication`,
+  // unless the first definition was mutable: then the new value replaces it without a word, and
+  // false is returned.
+  bool define(std::string_view name, ParameterValue value, bool local, bool is_mutable = false);
 
  private:
-  std::vector<std::map<std::string, ParameterValue, std::less<>>> scopes_;
+  struct Entry {
+    ParameterValue value;
+    bool is_mutable;
+  };
+  std::vector<std::map<std::string, Entry, std::less<>>> scopes_;
 };
 
 double as_real(const ParameterValue& value);
 
-// Evaluates an expression with + - * / ** ( ), functions and parameter names with or without &. Integers stay
-// integers and divide as in Fortran. Nothing, and what went wrong in `problem`, if it has no value.
-std::optional<ParameterValue> evaluate_expression(std::string_view text, const ParameterTable& table,
+// Evaluates an expression with + - * / ** ( ), functions and parameter names with or without &.
+// Integers stay integers and divide as in Fortran. Nothing, and what went wrong in `problem`, if it
+// has no value.
+std::optional<ParameterValue> evaluate_expression(std::string_view text,
+                                                  const ParameterTable& table,
                                                   std::string& problem);
 
 }  // namespace fabrica

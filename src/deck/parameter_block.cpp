@@ -10,7 +10,8 @@ namespace {
 
 class ParameterReader {
  public:
-  ParameterReader(Context& context, Block& block, bool local) : context_(context), block_(block), local_(local) {
+  ParameterReader(Context& context, Block& block, bool local, bool is_mutable)
+      : context_(context), block_(block), local_(local), mutable_(is_mutable) {
     width_ = block.format.long_fields ? 20 : 10;
   }
 
@@ -27,7 +28,8 @@ class ParameterReader {
         const bool text = std::toupper(static_cast<unsigned char>(texts.text[i][0])) == 'C';
         std::string_view value = texts.text[i + 1];
         const auto start = (i + 1) * std::size_t(width_);
-        if (text && !texts.free && start < block_.line().size()) value = trimmed(block_.line().substr(start));
+        if (text && !texts.free && start < block_.line().size())
+          value = trimmed(block_.line().substr(start));
         define(texts.text[i], value, block_.here(), false);
         if (text && !texts.free) break;
       }
@@ -42,7 +44,8 @@ class ParameterReader {
       const std::string_view line = block_.line();
       if (trimmed(line).empty()) continue;
       std::size_t cut = std::min(line.size(), std::size_t(width_)), skip = cut;
-      if (const std::size_t comma = line.find(','); comma != line.npos && comma <= std::size_t(width_))
+      if (const std::size_t comma = line.find(',');
+          comma != line.npos && comma <= std::size_t(width_))
         cut = comma, skip = comma + 1;
       const std::string_view name = trimmed(line.substr(0, cut));
       const std::string_view text = trimmed(line.substr(skip));
@@ -57,13 +60,22 @@ class ParameterReader {
     if (!head.empty()) define(head, body, where, true);
   }
 
+  // only the first *PARAMETER_DUPLICATION counts
   void duplication() {
     while (block_.next()) {
-      const auto flag = parse_integer(trimmed(block_.line().substr(0, std::size_t(width_))));
-      if (flag && *flag >= 1 && *flag <= 5)
+      const std::string_view text = trimmed(block_.line().substr(0, std::size_t(width_)));
+      if (text.empty()) continue;
+      const auto flag = parse_integer(text);
+      if (!flag || *flag < 1 || *flag > 5) {
+        context_.error("value-out-of-range", block_.here(), block_.keyword, "dflag",
+                       "expected 1 to 5", "Use 1 to 5");
+      } else if (context_.parameters.duplication) {
+        context_.report(Severity::warning, "duplicate-keyword", block_.here(), block_.keyword,
+                        "dflag", "the first *PARAMETER_DUPLICATION counts",
+                        "Give the keyword once");
+      } else {
         context_.parameters.duplication = Duplication(*flag);
-      else if (!trimmed(block_.line()).empty())
-        context_.error("value-out-of-range", block_.here(), block_.keyword, "dflag", "expected 1 to 5", "Use 1 to 5");
+      }
     }
   }
 
@@ -72,20 +84,23 @@ class ParameterReader {
     const char type = char(std::toupper(static_cast<unsigned char>(head[0])));
     const std::string name(trimmed(head.substr(1)));
     bool good = !name.empty() && (type == 'R' || type == 'I' || type == 'C');
-    for (const char c : name) good = good && (std::isalnum(static_cast<unsigned char>(c)) || c == '_');
+    for (const char c : name)
+      good = good && (std::isalnum(static_cast<unsigned char>(c)) || c == '_');
     if (!good) {
       context_.error("bad-parameter", where, block_.keyword, std::string(head),
-                     "expected R, I or C and a name of letters, digits and _", "Write for example \"R  width\"");
+                     "expected R, I or C and a name of letters, digits and _",
+                     "Write for example \"R  width\"");
       return;
     }
     ParameterValue value = std::int64_t(0);
     if (!value_of(type, name, text, where, expression, value)) return;
-    const bool twice = context_.parameters.define(name, std::move(value), local_);
+    const bool twice =
+        context_.parameters.define(name, std::move(value), local_, mutable_ && type != 'C');
     if (twice) report_twice(name, where);
   }
 
-  bool value_of(char type, const std::string& name, std::string_view text, Location where, bool expression,
-                ParameterValue& value) {
+  bool value_of(char type, const std::string& name, std::string_view text, Location where,
+                bool expression, ParameterValue& value) {
     if (type == 'C') {
       value = std::string(text);
       return true;
@@ -94,8 +109,9 @@ class ParameterReader {
       std::string problem;
       const auto result = evaluate_expression(text, context_.parameters, problem);
       if (!result) {
-        context_.error(problem.ends_with("not defined") ? "undefined-parameter" : "bad-expression", where,
-                       block_.keyword, name, problem, "Correct the expression \"" + std::string(text.substr(0, 60)) + "\"");
+        context_.error(problem.ends_with("not defined") ? "undefined-parameter" : "bad-expression",
+                       where, block_.keyword, name, problem,
+                       "Correct the expression \"" + std::string(text.substr(0, 60)) + "\"");
         return false;
       }
       value = *result;
@@ -117,7 +133,8 @@ class ParameterReader {
     }
     if (std::holds_alternative<std::int64_t>(value)) return true;
     if (std::abs(number) > 9e15) {
-      context_.error("bad-number", where, block_.keyword, name, "too large for an integer", "Declare it with R");
+      context_.error("bad-number", where, block_.keyword, name, "too large for an integer",
+                     "Declare it with R");
       return false;
     }
     value = std::int64_t(std::trunc(number));
@@ -125,11 +142,13 @@ class ParameterReader {
   }
 
   void report_twice(const std::string& name, Location where) {
-    const Duplication d = context_.parameters.duplication;
+    const Duplication d = context_.parameters.duplication.value_or(Duplication::warn_keep);
     const bool replaced = d == Duplication::warn_replace || d == Duplication::replace;
-    const std::string what = "parameter " + name + " is defined already; the " + (replaced ? "new" : "first") + " value counts";
+    const std::string what = "parameter " + name + " is defined already; the " +
+                             (replaced ? "new" : "first") + " value counts";
     if (d == Duplication::error_keep)
-      context_.error("duplicate-parameter", where, block_.keyword, name, what, "Give each parameter once");
+      context_.error("duplicate-parameter", where, block_.keyword, name, what,
+                     "Give each parameter once");
     else if (d == Duplication::warn_keep || d == Duplication::warn_replace)
       context_.report(Severity::warning, "duplicate-parameter", where, block_.keyword, name, what,
                       "Give each parameter once, or choose with *PARAMETER_DUPLICATION");
@@ -137,7 +156,7 @@ class ParameterReader {
 
   Context& context_;
   Block& block_;
-  bool local_;
+  bool local_, mutable_;
   int width_;
 };
 
@@ -145,11 +164,18 @@ class ParameterReader {
 
 bool read_parameters(Context& context, Block& block) {
   const std::string& k = block.keyword;
-  const bool local = k.ends_with("_LOCAL");
-  ParameterReader reader(context, block, local);
-  if (k == "PARAMETER" || k == "PARAMETER_LOCAL")
+  // *PARAMETER{_EXPRESSION}{_LOCAL}{_MUTABLE}
+  std::string stem = k;
+  const auto take = [&](std::string_view option) {
+    if (!stem.ends_with(option)) return false;
+    stem.resize(stem.size() - option.size());
+    return true;
+  };
+  const bool is_mutable = take("_MUTABLE"), local = take("_LOCAL");
+  ParameterReader reader(context, block, local, is_mutable || take("_MUTABLE"));
+  if (stem == "PARAMETER")
     reader.values();
-  else if (k == "PARAMETER_EXPRESSION" || k == "PARAMETER_EXPRESSION_LOCAL")
+  else if (stem == "PARAMETER_EXPRESSION")
     reader.expressions();
   else if (k == "PARAMETER_DUPLICATION")
     reader.duplication();

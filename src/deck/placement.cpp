@@ -3,74 +3,25 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <map>
 
 namespace fabrica {
 namespace {
-
-constexpr double degree = 3.14159265358979323846 / 180;
-
-// turn about the axis through p: Rodrigues' formula R = I + sin(t) K + (1 - cos(t)) K^2
-std::optional<Affine> turn(const Vec3d& axis, const Vec3d& p, double angle) {
-  const double length = norm(axis);
-  if (!(length > 0)) return std::nullopt;
-  const Vec3d u = (1 / length) * axis;
-  const Mat3d k{{{0, -u.z, u.y}, {u.z, 0, -u.x}, {-u.y, u.x, 0}}};
-  const Mat3d k2 = k * k;
-  Affine t;
-  t.identity = false;
-  const double s = std::sin(angle * degree), c = 1 - std::cos(angle * degree);
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) t.a(i, j) = (i == j) + s * k(i, j) + c * k2(i, j);
-  t.b = p - t.a * p;
-  return t;
-}
-
-// reflection at the plane through p with normal n: x' = x - 2 n (n . (x - p))
-std::optional<Affine> mirror(const Vec3d& p, const Vec3d& normal) {
-  const double length = norm(normal);
-  if (!(length > 0)) return std::nullopt;
-  const Vec3d n = (1 / length) * normal;
-  Affine t;
-  t.identity = false;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) t.a(i, j) = (i == j) - 2 * n[i] * n[j];
-  t.b = (2 * dot(n, p)) * n;
-  return t;
-}
-
-using Points = std::map<std::int64_t, Vec3d>;
-
-// ROTATE: axis a1-a3 through the point a4-a6 by a7 degrees, or about the line of points a1, a2 by a3
-std::optional<Affine> rotation(const Card& card, int r, const double* a, const Points& points, std::string& problem) {
-  const bool by_points = a[3] == 0 && a[4] == 0 && a[5] == 0 && a[6] == 0 && !card.row_given(r, 7);
-  if (!by_points) {
-    const auto t = turn({a[0], a[1], a[2]}, {a[3], a[4], a[5]}, a[6]);
-    if (!t) problem = "the axis of ROTATE has no length";
-    return t;
-  }
-  const auto p = points.find(std::int64_t(a[0])), q = points.find(std::int64_t(a[1]));
-  if (p == points.end() || q == points.end()) {
-    if (a[2] == 0) return Affine();
-    problem = "ROTATE names a POINT that is not defined above it";
-    return std::nullopt;
-  }
-  const auto t = turn(q->second - p->second, p->second, a[2]);
-  if (!t) problem = "the two points of ROTATE coincide";
-  return t;
-}
 
 // product of powers of mass, length, time that a word stands for
 struct Dimension {
   const char* name;
   int mass, length, time;
 };
-constexpr Dimension dimensions[] = {
-    {"mass", 1, 0, 0},      {"length", 0, 1, 0},        {"time", 0, 0, 1},   {"stress", 1, -1, -2},
-    {"pressure", 1, -1, -2}, {"force", 1, 1, -2},        {"energy", 1, 2, -2}, {"moment", 1, 2, -2},
-    {"velocity", 0, 1, -1}, {"acceleration", 0, 1, -2}, {"density", 1, -3, 0}, {"area", 0, 2, 0},
-    {"volume", 0, 3, 0},    {"strain", 0, 0, 0},        {"angle", 0, 0, 0},  {"1", 0, 0, 0},
-    {"-", 0, 0, 0},         {"rate", 0, 0, -1},         {"frequency", 0, 0, -1}};
+constexpr Dimension dimensions[] = {{"mass", 1, 0, 0},       {"length", 0, 1, 0},
+                                    {"time", 0, 0, 1},       {"stress", 1, -1, -2},
+                                    {"pressure", 1, -1, -2}, {"force", 1, 1, -2},
+                                    {"energy", 1, 2, -2},    {"moment", 1, 2, -2},
+                                    {"velocity", 0, 1, -1},  {"acceleration", 0, 1, -2},
+                                    {"density", 1, -3, 0},   {"area", 0, 2, 0},
+                                    {"volume", 0, 3, 0},     {"strain", 0, 0, 0},
+                                    {"angle", 0, 0, 0},      {"1", 0, 0, 0},
+                                    {"-", 0, 0, 0},          {"rate", 0, 0, -1},
+                                    {"frequency", 0, 0, -1}};
 
 // fields that hold points (true) or directions (false), by keyword
 struct Geometry {
@@ -91,6 +42,7 @@ constexpr Geometry geometry[] = {
 };
 
 bool is_geometry(const Card& card, const FieldSchema& f) {
+  if (card.schema->name == "DEFINE_TRANSFORMATION") return f.type == FieldType::real;
   for (const Geometry& g : geometry)
     if (card.schema->name == g.keyword)
       for (const char* name : g.fields)
@@ -103,9 +55,17 @@ bool starts(std::string_view text, std::string_view begin) { return text.starts_
 // kind of entity that a keyword defines by the first field of its first card
 std::string_view defined_kind(std::string_view keyword) {
   static constexpr std::pair<std::string_view, std::string_view> kinds[] = {
-      {"PART_CONTACT", "part"}, {"PART", "part"},           {"MAT_", "material"},      {"EOS_", "eos"},
-      {"SECTION_", "section"},  {"HOURGLASS", "hourglass"}, {"DEFINE_CURVE", "curve"}, {"DEFINE_TABLE", "table"},
-      {"DEFINE_FUNCTION", "curve"}, {"DEFINE_", "define"},  {"SET_", "set"}};
+      {"PART_CONTACT", "part"},
+      {"PART", "part"},
+      {"MAT_", "material"},
+      {"EOS_", "eos"},
+      {"SECTION_", "section"},
+      {"HOURGLASS", "hourglass"},
+      {"DEFINE_CURVE", "curve"},
+      {"DEFINE_TABLE", "table"},
+      {"DEFINE_FUNCTION", "curve"},
+      {"DEFINE_", "define"},
+      {"SET_", "set"}};
   for (const auto& [begin, kind] : kinds)
     if (starts(keyword, begin)) return kind;
   return {};
@@ -134,54 +94,15 @@ std::string_view side_kind(const Card& card, const char* type) {
 
 }  // namespace
 
-Affine compose(const Affine& outer, const Affine& inner) {
-  if (outer.identity) return inner;
-  if (inner.identity) return outer;
-  return {outer.a * inner.a, outer.a * inner.b + outer.b, false};
-}
-
-std::optional<Affine> affine_of(const Card& card, std::string& problem) {
-  Affine whole;
-  Points points;
-  for (int r = 0; r < card.row_count(); ++r) {
-    std::string option(card.row_text(r, 0));
-    for (char& c : option)
-      if (c >= 'a' && c <= 'z') c = char(c - 'a' + 'A');
-    double a[7];
-    for (int i = 0; i < 7; ++i) a[i] = i + 1 < card.columns() ? card.row(r, i + 1) : 0;
-    std::optional<Affine> t = Affine();
-    if (option == "TRANSL") {
-      t->b = {a[0], a[1], a[2]};
-      t->identity = false;
-    } else if (option == "SCALE") {
-      for (int i = 0; i < 3; ++i) t->a(i, i) = a[i] == 0 ? 1 : a[i];
-      t->identity = false;
-    } else if (option == "ROTATE") {
-      t = rotation(card, r, a, points, problem);
-    } else if (option == "MIRROR") {
-      t = mirror({a[0], a[1], a[2]}, Vec3d{a[3], a[4], a[5]} - Vec3d{a[0], a[1], a[2]});
-      if (!t) problem = "the normal of MIRROR has no length";
-    } else if (option == "POINT") {
-      points[std::int64_t(a[0])] = {a[1], a[2], a[3]};
-    } else {
-      problem = "transformation " + option + " is not supported";
-      return std::nullopt;
-    }
-    if (!t) return std::nullopt;
-    whole = compose(*t, whole);
-  }
-  return whole;
-}
-
 Placement nest(const Placement& outer, const Placement& inner) {
   Placement p = inner;
-  p.node += outer.node, p.element += outer.element, p.part += outer.part, p.material += outer.material;
-  p.set += outer.set, p.function += outer.function, p.define += outer.define, p.other += outer.other;
+  p.node += outer.node, p.element += outer.element, p.part += outer.part,
+      p.material += outer.material;
+  p.set += outer.set, p.function += outer.function, p.define += outer.define,
+      p.other += outer.other;
   p.mass *= outer.mass, p.time *= outer.time, p.length *= outer.length;
-  // lengths are converted once, before any map: the inner map's translation is in the units of its includer
-  Affine scaled = inner.map;
-  scaled.b = outer.length * scaled.b;
-  p.map = compose(outer.map, scaled);
+  // lengths are converted once, before any map; maps are in the units of the deck
+  p.map = compose(outer.map, inner.map);
   return p;
 }
 
@@ -193,7 +114,8 @@ std::int64_t Placement::offset(std::string_view kind) const {
   if (kind == "curve" || kind == "table" || kind == "function") return function;
   for (const char* k : {"element", "solid", "shell", "beam", "discrete"})
     if (kind == k) return element;
-  for (const char* k : {"define", "box", "vector", "coordinate_system", "sd_orientation", "transformation"})
+  for (const char* k :
+       {"define", "box", "vector", "coordinate_system", "sd_orientation", "transformation"})
     if (kind == k) return define;
   return other;
 }
@@ -212,10 +134,12 @@ std::optional<double> Placement::factor(std::string_view unit) const {
       if (e != std::errc() || p != digits.data() + digits.size()) return std::nullopt;
       word = word.substr(0, hat);
     }
-    const auto d = std::find_if(std::begin(dimensions), std::end(dimensions), [&](const auto& x) { return word == x.name; });
+    const auto d = std::find_if(std::begin(dimensions), std::end(dimensions),
+                                [&](const auto& x) { return word == x.name; });
     if (d == std::end(dimensions)) return std::nullopt;
     if (sign == '/') power = -power;
-    value *= std::pow(mass, power * d->mass) * std::pow(length, power * d->length) * std::pow(time, power * d->time);
+    value *= std::pow(mass, power * d->mass) * std::pow(length, power * d->length) *
+             std::pow(time, power * d->time);
     sign = end < unit.size() ? unit[end] : '*';
     unit.remove_prefix(std::min(end + 1, unit.size()));
   }
@@ -231,14 +155,19 @@ std::string_view id_kind(const Card& card, const FieldSchema& field, int row) {
     return field.name == "cid" ? "other" : std::string_view{};
   }
   if (row >= 0 && starts(keyword, "SET_") && field.type == FieldType::integer)
-    return set_row_kind(keyword, card.table_texts_.empty() ? std::string_view{} : card.row_text(row, 0));
+    return set_row_kind(keyword,
+                        card.table_texts_.empty() ? std::string_view{} : card.row_text(row, 0));
   if (starts(keyword, "DATABASE_HISTORY_") && field.name.starts_with("id"))
-    return keyword.find("_SET") != keyword.npos ? "set" : starts(keyword, "DATABASE_HISTORY_NODE") ? "node" : "element";
-  if (keyword == "MAT_RIGID" && (field.name == "lco" || (field.name == "con1" && card.real("cmo") == -1)))
+    return keyword.find("_SET") != keyword.npos       ? "set"
+           : starts(keyword, "DATABASE_HISTORY_NODE") ? "node"
+                                                      : "element";
+  if (keyword == "MAT_RIGID" &&
+      (field.name == "lco" || (field.name == "con1" && card.real("cmo") == -1)))
     return field.name == "lco" && card.given("a2") ? std::string_view{} : "define";
   if (row < 0)
     for (const CardSchema& c : card.schema->cards)
-      if (!c.fields.empty()) return &c.fields[0] == &field ? defined_kind(keyword) : std::string_view{};
+      if (!c.fields.empty())
+        return &c.fields[0] == &field ? defined_kind(keyword) : std::string_view{};
   return {};
 }
 
@@ -273,11 +202,36 @@ void place(const Placement& placement, Card& card,
   card.table_ = std::move(table);
 }
 
+namespace {
+
+// Converts the lengths of *DEFINE_TRANSFORMATION. Its moves stay in the axes of the included file,
+// whose own map comes after them.
+void convert_lengths(double factor, Card& card) {
+  // first and last of the columns a1.. that hold coordinates
+  struct Range {
+    const char* option;
+    int first, last;
+  };
+  static constexpr Range ranges[] = {
+      {"TRANSL", 1, 3}, {"ROTATE", 4, 6}, {"MIRROR", 1, 6}, {"POINT", 2, 4}};
+  for (int r = 0; r < card.row_count(); ++r)
+    for (const Range& range : ranges)
+      if (card.row_text(r, 0) == range.option)
+        for (int c = range.first; c <= std::min(range.last, card.columns() - 1); ++c)
+          card.table_[std::size_t(r) * std::size_t(card.columns()) + std::size_t(c)] *= factor;
+}
+
+}  // namespace
+
 bool move_geometry(const Placement& placement, Card& card) {
   if (placement.map.identity && !placement.factors()) return true;
   const std::string& keyword = card.schema->name;
-  if (starts(keyword, "RIGIDWALL_") || keyword == "DEFINE_BOX" || starts(keyword, "DATABASE_CROSS_SECTION_PLANE"))
+  if (keyword == "DEFINE_TRANSFORMATION") convert_lengths(placement.length, card);
+  if (starts(keyword, "RIGIDWALL_") || keyword == "DEFINE_BOX" ||
+      starts(keyword, "DATABASE_CROSS_SECTION_PLANE"))
     return placement.map.identity;
+  if (keyword == "NODE_TRANSFORM")
+    return false;  // its moves are meant in the axes of the included file
   if (keyword == "PART" && !card.has_option("INERTIA")) return true;
   if (keyword == "PART") return false;  // the tensor of inertia would have to turn too
   if (keyword == "DEFINE_VECTOR" && card.real("cid") != 0) return true;

@@ -53,9 +53,10 @@ class DeckReader {
         }
       } else if (before && !line.starts_with('$') && !trimmed(line).empty()) {
         before = false;
-        context_.error("text-before-keyword", {file, lines.number}, "", "",
-                       "\"" + std::string(trimmed(line).substr(0, 40)) + "\" stands before the first keyword",
-                       "Start the deck with *KEYWORD; comments start with $");
+        context_.error(
+            "text-before-keyword", {file, lines.number}, "", "",
+            "\"" + std::string(trimmed(line).substr(0, 40)) + "\" stands before the first keyword",
+            "Start the deck with *KEYWORD; comments start with $");
       }
     }
   }
@@ -64,11 +65,9 @@ class DeckReader {
     context_.summarise_rest();
     if (!context_.options.expect_complete) return;
     if (context_.keywords == 0)
-      context_.error("empty-deck", {0, 1}, "", "", "the deck holds no keyword besides *KEYWORD and *END",
+      context_.error("empty-deck", {0, 1}, "", "",
+                     "the deck holds no keyword besides *KEYWORD and *END",
                      "Check that this is the right file");
-    else if (!context_.terminated)
-      context_.diagnostics.warning("no-termination", {0, 1}, "CONTROL_TERMINATION", "endtim",
-                                   "the deck has no end time", "Add *CONTROL_TERMINATION");
   }
 
  private:
@@ -102,7 +101,8 @@ class DeckReader {
     for (char& c : keyword) c = char(std::toupper(static_cast<unsigned char>(c)));
     std::string rest(trimmed(line.substr(end)));
     Format own = format;
-    if (keyword.size() > 1 && (keyword.back() == '+' || keyword.back() == '-' || keyword.back() == '%')) {
+    if (keyword.size() > 1 &&
+        (keyword.back() == '+' || keyword.back() == '-' || keyword.back() == '%')) {
       rest = keyword.back();
       keyword.pop_back();
     }
@@ -156,9 +156,12 @@ class DeckReader {
     const KeywordSchema* const schema = vocabulary.find(block.keyword, options);
     if (schema) return read_cards(context_, block, *schema, options);
     const auto near = vocabulary.suggest(block.keyword);
-    std::string remedy = near.empty() ? "Remove the keyword, or see the manual for what is supported" : "Did you mean ";
+    std::string remedy = near.empty()
+                             ? "Remove the keyword, or see the manual for what is supported"
+                             : "Did you mean ";
     for (std::size_t i = 0; i < near.size(); ++i) remedy += (i ? ", *" : "*") + near[i];
-    context_.error("unknown-keyword", block.where, block.keyword, "", "the keyword is not known", remedy);
+    context_.error("unknown-keyword", block.where, block.keyword, "", "the keyword is not known",
+                   remedy);
   }
 
   // a file name, continued on the next line where it ends in " +"
@@ -189,13 +192,15 @@ class DeckReader {
     if (k == "INCLUDE") {
       while (block.next()) {
         const Location where = block.here();
-        if (const std::string name = name_line(block); !name.empty()) follow(block, name, where, block.placement);
+        if (const std::string name = name_line(block); !name.empty())
+          follow(block, name, where, block.placement);
       }
       return true;
     }
     if (k != "INCLUDE_TRANSFORM") return false;
     if (!block.next()) {
-      context_.error("truncated-card", block.where, k, "filename", "the file name is missing", "Name the file");
+      context_.error("truncated-card", block.where, k, "filename", "the file name is missing",
+                     "Name the file");
       return true;
     }
     const Location where = block.here();
@@ -223,14 +228,16 @@ class DeckReader {
       for (int i = 0; i < 8; ++i) {
         bool given = false;
         if (*names[line][i])
-          good = context_.number(block, block.here(), names[line][i], texts.text[std::size_t(i)], line != 2, v[line][i],
-                                 given) && good;
+          good = context_.number(block, block.here(), names[line][i], texts.text[std::size_t(i)],
+                                 line != 2, v[line][i], given) &&
+                 good;
       }
     }
     for (const auto& row : {v[0], v[1]})
       for (int i = 0; i < 7; ++i)
         if (std::abs(row[i]) > 1e12) return too_large(block);
-    std::int64_t* const ids[7] = {&p.node, &p.element, &p.part, &p.material, &p.set, &p.function, &p.define};
+    std::int64_t* const ids[7] = {&p.node, &p.element,  &p.part,  &p.material,
+                                  &p.set,  &p.function, &p.define};
     for (int i = 0; i < 7; ++i) *ids[i] = std::int64_t(v[0][i]);
     p.other = std::int64_t(v[1][0]);
     if (v[2][0] != 0) p.mass = v[2][0];
@@ -238,7 +245,9 @@ class DeckReader {
     if (v[2][2] != 0) p.length = v[2][2];
     const auto id = std::int64_t(std::clamp(v[3][0], -1e15, 1e15));
     if (id != 0) {
-      const auto found = context_.transformations.find(id);
+      // one of the including file's own ids, which are shifted where it is placed itself, or one from outside
+      auto found = context_.transformations.find(id + block.placement.offset("transformation"));
+      if (found == context_.transformations.end()) found = context_.transformations.find(id);
       if (found == context_.transformations.end()) {
         context_.error("missing-transformation", block.here(), block.keyword, "tranid",
                        "*DEFINE_TRANSFORMATION " + std::to_string(id) + " is not defined above",
@@ -251,25 +260,29 @@ class DeckReader {
   }
 
   bool too_large(const Block& block) {
-    context_.error("value-out-of-range", block.here(), block.keyword, "", "an offset is too large", "Use less than 1e12");
+    context_.error("value-out-of-range", block.here(), block.keyword, "", "an offset is too large",
+                   "Use less than 1e12");
     return false;
   }
 
-  void follow(const Block& block, const std::string& name, Location where, const Placement& placement) {
+  void follow(const Block& block, const std::string& name, Location where,
+              const Placement& placement) {
     if (!context_.options.follow_includes) {
-      context_.error("include-not-followed", where, block.keyword, "filename", name + " is not read here",
-                     "Read the deck from a file");
+      context_.error("include-not-followed", where, block.keyword, "filename",
+                     name + " is not read here", "Read the deck from a file");
       return;
     }
     fs::path found;
     if (!locate(name, found)) {
-      context_.error("missing-file", where, block.keyword, "filename", name + " is in none of the search paths",
+      context_.error("missing-file", where, block.keyword, "filename",
+                     name + " is in none of the search paths",
                      "Check the name, or add its folder with *INCLUDE_PATH");
       return;
     }
-    if (std::find(open_.begin(), open_.end(), identity(found)) != open_.end() || int(open_.size()) > deepest_include) {
-      context_.error("cyclic-include", where, block.keyword, "filename", name + " includes itself, directly or not",
-                     "Remove one of the includes");
+    if (std::find(open_.begin(), open_.end(), identity(found)) != open_.end() ||
+        int(open_.size()) > deepest_include) {
+      context_.error("cyclic-include", where, block.keyword, "filename",
+                     name + " includes itself, directly or not", "Remove one of the includes");
       return;
     }
     context_.parameters.open_scope();
@@ -300,28 +313,30 @@ class DeckReader {
 
 }  // namespace
 
-bool read_into(Builder& builder, const fs::path& path, Diagnostics& diagnostics, const ReadOptions& options) {
+bool read_into(Builder& builder, const fs::path& path, Diagnostics& diagnostics,
+               const ReadOptions& options) {
   DeckReader reader(builder, diagnostics, options);
   if (!reader.read_file(path, Placement())) return false;
   reader.finish();
   return true;
 }
 
-void read_text_into(Builder& builder, std::string_view text, std::string_view name, Diagnostics& diagnostics,
-                    const ReadOptions& options) {
+void read_text_into(Builder& builder, std::string_view text, std::string_view name,
+                    Diagnostics& diagnostics, const ReadOptions& options) {
   DeckReader reader(builder, diagnostics, options);
   reader.read_text(text, std::string(name), Placement());
   reader.finish();
 }
 
-std::unique_ptr<Model> read_deck(const fs::path& path, Diagnostics& diagnostics, const ReadOptions& options) {
+std::unique_ptr<Model> read_deck(const fs::path& path, Diagnostics& diagnostics,
+                                 const ReadOptions& options) {
   Builder builder(diagnostics);
   read_into(builder, path, diagnostics, options);
   return builder.finish();
 }
 
-std::unique_ptr<Model> read_deck_text(std::string_view text, std::string_view name, Diagnostics& diagnostics,
-                                      const ReadOptions& options) {
+std::unique_ptr<Model> read_deck_text(std::string_view text, std::string_view name,
+                                      Diagnostics& diagnostics, const ReadOptions& options) {
   Builder builder(diagnostics);
   read_text_into(builder, text, name, diagnostics, options);
   return builder.finish();

@@ -148,7 +148,7 @@ Card& Card::add_row(std::string_view text, const std::vector<double>& row_values
 std::vector<std::int64_t> Card::row_ids() const {
   std::vector<std::int64_t> ids;
   for (std::size_t i = 0; i < table_.size(); ++i)
-    if (table_given_[i] && table_[i] != 0) ids.push_back(std::int64_t(table_[i]));
+    if (table_given_[i] && table_[i] != 0) ids.push_back(to_id(table_[i]));
   return ids;
 }
 

@@ -57,6 +57,7 @@ Resolver::Resolver(Builder& builder)
                            "discrete"})
     tables_[kind].reset(0);
   for (int i = 0; i < int(model_.cards.size()); ++i) card_index_[model_.cards[i].get()] = i;
+  for (const Diagnostic& d : diagnostics_.list()) files_missing_ |= d.name == "missing-file";
 }
 
 void Resolver::run() {
@@ -70,6 +71,7 @@ void Resolver::run() {
             {"DEFINE_FUNCTION", &R::read_function},
             {"DEFINE_FUNCTION_TABULATED", &R::read_function},
             {"DEFINE_BOX", &R::read_box},
+            {"DEFINE_TRANSFORMATION", &R::read_transformation},
             {"DEFINE_COORDINATE_SYSTEM", &R::read_coordinate_system},
             {"DEFINE_COORDINATE_NODES", &R::read_coordinate_nodes},
             {"DEFINE_COORDINATE_VECTOR", &R::read_coordinate_vector},
@@ -90,6 +92,7 @@ void Resolver::run() {
   resolve_elements();
   index_parts();
   resolve_sets();
+  move_nodes();
   read_all({{"DEFORMABLE_TO_RIGID", &R::read_deformable_to_rigid}});
   check_parts();
 
@@ -128,6 +131,7 @@ void Resolver::run() {
   check_rigid_nodes();
   check_joints();
   check_termination();
+  report_rest();
 }
 
 void Resolver::read_all(const std::vector<Handler>& handlers) {
@@ -146,17 +150,32 @@ void Resolver::read_all(const std::vector<Handler>& handlers) {
   }
 }
 
-bool Resolver::may_report(const std::string& name) {
-  const int n = ++reports_[name];
-  if (n == report_limit + 1)
-    diagnostics_.add({Severity::note,
-                      name,
-                      {},
-                      "",
-                      "",
-                      "further cases of this kind are not listed",
-                      "Correct the first ones"});
-  return n <= report_limit;
+bool Resolver::may_report(const std::string& name, Severity severity) {
+  const int n = ++reports_[{name, severity}];
+  return n <= report_limit && !(files_missing_ && name.starts_with("missing-"));
+}
+
+void Resolver::report_rest() {
+  for (const auto& [kind, n] : reports_) {
+    const auto& [name, severity] = kind;
+    if (files_missing_ && name.starts_with("missing-"))
+      diagnostics_.add({Severity::note,
+                        name,
+                        {},
+                        "",
+                        "",
+                        std::to_string(n) + " references lead nowhere while files are missing",
+                        "Supply the files, then check again"});
+    else if (n > report_limit)
+      diagnostics_.add({severity,
+                        name,
+                        {},
+                        "",
+                        "",
+                        std::to_string(n - report_limit) + " more of the same kind are not listed",
+                        "Correct the first ones",
+                        n - report_limit});
+  }
 }
 
 void Resolver::error(const Card& card, std::string_view field, std::string name,
@@ -170,7 +189,7 @@ void Resolver::error(const Card& card, std::string_view field, std::string name,
 
 void Resolver::warning(const Card& card, std::string_view field, std::string name,
                        std::string message, std::string remedy) {
-  if (!may_report(name)) return;
+  if (!may_report(name, Severity::warning)) return;
   const Location where =
       field.empty() || !card.has_field(field) ? card.where : card.where_of(field);
   diagnostics_.warning(std::move(name), where, card.schema->name, std::string(field),
@@ -179,7 +198,7 @@ void Resolver::warning(const Card& card, std::string_view field, std::string nam
 
 void Resolver::unsupported(const Card& card, std::string_view field, std::string name,
                            std::string message, std::string remedy) {
-  if (!may_report(name)) return;
+  if (!may_report(name, Severity::unsupported)) return;
   const Location where =
       field.empty() || !card.has_field(field) ? card.where : card.where_of(field);
   diagnostics_.add({Severity::unsupported, std::move(name), where, card.schema->name,
@@ -235,7 +254,7 @@ void Resolver::check_references() {
 
 void Resolver::check_reference(const Card& card, const FieldSchema& field, double value,
                                Location where) {
-  const auto id = std::int64_t(std::abs(value));
+  const auto id = to_id(std::abs(value));
   if (id == 0 || field.type != FieldType::integer || field.support == Support::ignored) return;
   const std::string& kind = field.reference;
   bool found = reference(kind, id) >= 0;

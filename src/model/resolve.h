@@ -44,8 +44,11 @@ class Resolver {
                std::string remedy);
   void unsupported(const Card& card, std::string_view field, std::string name, std::string message,
                    std::string remedy);
-  // at most some reports of one name, so that a wrong offset does not hide all else
-  bool may_report(const std::string& name);
+  // True if a report may be listed: at most some of one name, so that a wrong offset does not hide
+  // all else, and none of missing entities where a file is missing that may hold them. The others
+  // are counted.
+  bool may_report(const std::string& name, Severity severity = Severity::error);
+  void report_rest();
 
   // references: index, or -1 if the id is zero or unknown (which check_references reports)
   int node(std::int64_t id) const { return id == 0 ? -1 : nodes_.find(id); }
@@ -82,10 +85,14 @@ class Resolver {
   void read_coordinate_system(const Card& card);
   void read_coordinate_nodes(const Card& card);
   void read_coordinate_vector(const Card& card);
+  void read_transformation(const Card& card);
   void read_vector(const Card& card);
   void read_sd_orientation(const Card& card);
   void add_curve(const Card& card, Curve curve);
   void add_system(const Card& card, CoordinateSystem system, const Vec3d& x, const Vec3d& xy);
+  void degenerate_system(const Card& card, const CoordinateSystem& system);
+  void place_system(const Card& card, CoordinateSystem& system);
+  void move_nodes();
   void finish_curves();
   void finish_tables();
 
@@ -183,7 +190,8 @@ class Resolver {
   Diagnostics& diagnostics_;
   IdTable nodes_;
   std::map<std::string, IdTable, std::less<>> tables_;
-  std::unordered_map<std::string, int> reports_;
+  std::map<std::pair<std::string, Severity>, int> reports_;
+  bool files_missing_ = false;
   std::vector<const Card*> table_cards_;
   std::unordered_map<const Card*, int> card_index_;
   std::vector<Vec3d> vectors_;

@@ -41,7 +41,8 @@ void Resolver::check_mesh() {
   };
   for (int e = 0; e < model_.solids.size(); ++e) {
     const auto& n = model_.solids.node[e];
-    if (n[8] < 0 && *std::min_element(n.begin(), n.begin() + 8) < 0) continue;
+    const int corners = n[8] >= 0 ? 4 : 8;  // those of ten nodes that make the volume
+    if (*std::min_element(n.begin(), n.begin() + corners) < 0) continue;
     const double v = solid_volume(model_, e);
     if (v < 0)
       report("negative-volume", staging.solid_where[e], "ELEMENT_SOLID", model_.solids.id[e],
@@ -214,8 +215,15 @@ void Resolver::check_joints() {
 
 void Resolver::check_termination() {
   if (model_.controls.end_time > 0 || model_.controls.end_cycle > 0) return;
-  diagnostics_.error("no-termination", {}, "CONTROL_TERMINATION", "endtim",
-                     "the run has no end time", "Give *CONTROL_TERMINATION with ENDTIM");
+  // a file that is missing may hold it
+  const Severity severity = files_missing_ ? Severity::warning : Severity::error;
+  diagnostics_.add({severity,
+                    "no-termination",
+                    {0, 1},
+                    "CONTROL_TERMINATION",
+                    "endtim",
+                    "the run has no end time",
+                    "Give *CONTROL_TERMINATION with ENDTIM"});
 }
 
 }  // namespace fabrica

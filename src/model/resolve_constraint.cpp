@@ -7,8 +7,8 @@ namespace fabrica {
 
 void Resolver::read_rigid_bodies(const Card& card) {
   for (int i = 0; i < card.row_count(); ++i) {
-    const int lead = part(std::int64_t(card.row(i, 0)));
-    const int constrained = part(std::int64_t(card.row(i, 1)));
+    const int lead = part(to_id(card.row(i, 0)));
+    const int constrained = part(to_id(card.row(i, 1)));
     if (lead < 0 || constrained < 0) continue;
     for (int p : {lead, constrained})
       if (!model_.parts[p].rigid)
@@ -23,8 +23,8 @@ void Resolver::read_extra_nodes(const Card& card) {
   const bool by_set = card.schema->name.ends_with("_SET");
   for (int i = 0; i < card.row_count(); ++i) {
     ExtraNodes e;
-    e.part = part(std::int64_t(card.row(i, 0)));
-    const auto id = std::int64_t(card.row(i, 1));
+    e.part = part(to_id(card.row(i, 0)));
+    const auto id = to_id(card.row(i, 1));
     if (e.part < 0 || id == 0) continue;
     if (by_set)
       e.nodes = set_or_all(id);

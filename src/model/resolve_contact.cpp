@@ -150,9 +150,9 @@ void Resolver::read_contact(const Card& card) {
   c.fsf = nonzero(card, "fsf", 1), c.vsf = nonzero(card, "vsf", 1);
   c.soft = card.integer("soft");
   c.sofscl = nonzero(card, "sofscl", 0.1), c.maxpar = nonzero(card, "maxpar", 1.025);
-  c.sbopt = int(nonzero(card, "sbopt", 2)), c.depth = int(nonzero(card, "depth", 2));
+  c.sbopt = to_int(nonzero(card, "sbopt", 2)), c.depth = to_int(nonzero(card, "depth", 2));
   c.penmax = card.real("penmax"), c.thkopt = card.integer("thkopt");
-  c.shlthk = int(nonzero(card, "shlthk", model_.controls.shell_thickness_option));
+  c.shlthk = to_int(nonzero(card, "shlthk", model_.controls.shell_thickness_option));
   c.snlog = card.integer("snlog");
   c.ignore = card.given("ignore") ? card.integer("ignore") : model_.controls.contact_ignore;
   model_.contacts.push_back(std::move(c));

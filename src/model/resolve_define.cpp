@@ -5,6 +5,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "model/affine.h"
 #include "model/resolve.h"
 
 namespace fabrica {
@@ -23,6 +24,14 @@ void sort_points(Curve& curve) {
                    [&](std::size_t a, std::size_t b) { return curve.x[a] < curve.x[b]; });
   const auto x = curve.x, y = curve.y;
   for (std::size_t i = 0; i < order.size(); ++i) curve.x[i] = x[order[i]], curve.y[i] = y[order[i]];
+}
+
+// Gives a system its axes. x: local x axis, xy: a vector in the local xy plane; false if they do
+// not span a plane.
+bool span(CoordinateSystem& system, const Vec3d& x, const Vec3d& xy) {
+  const Vec3d ex = unit(x), ez = unit(cross(x, xy)), ey = cross(ez, ex);
+  system.axes = {{{ex.x, ex.y, ex.z}, {ey.x, ey.y, ey.z}, {ez.x, ez.y, ez.z}}};
+  return norm(ez) > 0.5;
 }
 
 }  // namespace
@@ -120,7 +129,7 @@ void Resolver::read_table(const Card& card) {
 
   if (card.schema->name == "DEFINE_TABLE_2D") {
     for (int i = 0; i < card.row_count(); ++i)
-      t.curve.push_back(reference("curve", std::int64_t(card.row(i, 1))));
+      t.curve.push_back(reference("curve", to_id(card.row(i, 1))));
   } else {
     // the curves are the next ones in the deck
     for (std::size_t k = std::size_t(card_index_[&card]) + 1;
@@ -158,18 +167,17 @@ void Resolver::read_box(const Card& card) {
   if (define("box", box.id, int(model_.boxes.size()), card, "boxid")) model_.boxes.push_back(box);
 }
 
-// x: local x axis, xy: a vector in the local xy plane
 void Resolver::add_system(const Card& card, CoordinateSystem system, const Vec3d& x,
                           const Vec3d& xy) {
-  const Vec3d ex = unit(x), ez = unit(cross(x, xy));
-  if (!(norm(ez) > 0.5))
-    error(card, "cid", "degenerate-coordinate-system",
-          "the points of system " + std::to_string(system.id) + " lie on one line",
-          "Choose a third point off the x axis");
-  const Vec3d ey = cross(ez, ex);
-  system.axes = {{{ex.x, ex.y, ex.z}, {ey.x, ey.y, ey.z}, {ez.x, ez.y, ez.z}}};
+  if (!span(system, x, xy)) degenerate_system(card, system);
   if (define("coordinate_system", system.id, int(model_.coordinate_systems.size()), card, "cid"))
     model_.coordinate_systems.push_back(system);
+}
+
+void Resolver::degenerate_system(const Card& card, const CoordinateSystem& system) {
+  error(card, "cid", "degenerate-coordinate-system",
+        "the points of system " + std::to_string(system.id) + " lie on one line",
+        "Choose a third point off the x axis");
 }
 
 void Resolver::read_coordinate_system(const Card& card) {
@@ -186,26 +194,56 @@ void Resolver::read_coordinate_nodes(const Card& card) {
   s.id = card.id("cid");
   s.moves = card.integer("flag") == 1;
   const char* fields[3] = {"n1", "n2", "n3"};
-  for (int k = 0; k < 3; ++k) {
-    s.node[k] = node(card.id(fields[k]));
-    if (s.node[k] < 0) return;  // reported with the references
-  }
+  for (int k = 0; k < 3; ++k) s.node[k] = node(card.id(fields[k]));
+  if (s.moves && card.text("dir").find_first_of("YZ") == 0)
+    unsupported(card, "dir", "unsupported-axis", "moving axes along y or z are not computed",
+                "Number the nodes so that the first two lie on the x axis");
+  s.axes = identity3<double>();
+  place_system(card, s);
+  if (define("coordinate_system", s.id, int(model_.coordinate_systems.size()), card, "cid"))
+    model_.coordinate_systems.push_back(s);
+}
+
+// Origin and axes of *DEFINE_COORDINATE_NODES. Nodes that are missing are reported with the
+// references.
+void Resolver::place_system(const Card& card, CoordinateSystem& s) {
+  if (*std::min_element(s.node.begin(), s.node.end()) < 0) return;
   const auto& x = model_.nodes.x;
   s.origin = x[s.node[0]];
-  add_system(card, s, x[s.node[1]] - s.origin, x[s.node[2]] - s.origin);
+  if (!span(s, x[s.node[1]] - s.origin, x[s.node[2]] - s.origin)) degenerate_system(card, s);
 
   // DIR names the axis along the first two nodes: the axes are renamed in cyclic order
   const std::string_view direction = card.text("dir");
   const int turn = direction.starts_with("Y") ? 1 : direction.starts_with("Z") ? 2 : 0;
-  if (turn == 0 || model_.coordinate_systems.empty()) return;
-  if (CoordinateSystem& last = model_.coordinate_systems.back(); last.id == s.id) {
-    const Mat3d along = last.axes;
-    for (int k = 0; k < 3; ++k)
-      for (int j = 0; j < 3; ++j) last.axes((k + turn) % 3, j) = along(k, j);
-    if (last.moves)
-      unsupported(card, "dir", "unsupported-axis", "moving axes along y or z are not computed",
-                  "Number the nodes so that the first two lie on the x axis");
+  const Mat3d along = s.axes;
+  for (int k = 0; k < 3; ++k)
+    for (int j = 0; j < 3; ++j) s.axes((k + turn) % 3, j) = along(k, j);
+}
+
+// *NODE_TRANSFORM, in the order of the deck. What was already placed by its nodes follows them.
+void Resolver::move_nodes() {
+  bool moved = false;
+  for (const auto& card : model_.cards) {
+    if (!card->schema || card->schema->name != "NODE_TRANSFORM") continue;
+    for (int r = 0; r < card->row_count(); ++r) {
+      const int definition = reference("transformation", to_id(card->row(r, "trsid")));
+      if (definition < 0) continue;  // reported with the references
+      std::string problem;
+      const auto map = affine_of(*model_.cards[definition], problem);
+      if (!map) continue;  // reported where it was read
+      for (const int n : set_or_all(to_id(card->row(r, "nsid"))))
+        model_.nodes.x[n] = (*map)(model_.nodes.x[n]);
+      moved = true;
+    }
   }
+  if (!moved) return;
+  for (const auto& card : model_.cards)
+    if (card->schema && card->schema->name == "DEFINE_COORDINATE_NODES")
+      if (const int s = reference("coordinate_system", card->id("cid")); s >= 0)
+        place_system(*card, model_.coordinate_systems[s]);
+  for (Part& part : model_.parts)
+    if (part.inertia && part.inertia->node >= 0)
+      part.inertia->center = model_.nodes.x[part.inertia->node];
 }
 
 void Resolver::read_coordinate_vector(const Card& card) {
@@ -218,6 +256,10 @@ void Resolver::read_coordinate_vector(const Card& card) {
 
 Vec3d Resolver::to_global(int system, const Vec3d& v) const {
   return system < 0 ? v : transpose(model_.coordinate_systems[system].axes) * v;
+}
+
+void Resolver::read_transformation(const Card& card) {
+  table("transformation").insert(card.id("tranid"), card_index_[&card]);
 }
 
 void Resolver::read_vector(const Card& card) {

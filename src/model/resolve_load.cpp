@@ -59,9 +59,9 @@ void Resolver::read_initial_velocity(const Card& card) {
 void Resolver::read_initial_node(const Card& card) {
   InitialVelocity v;
   for (int i = 0; i < card.row_count(); ++i) {
-    const int n = node(std::int64_t(card.row(i, 0)));
+    const int n = node(to_id(card.row(i, 0)));
     if (n < 0) continue;
-    const int system = reference("coordinate_system", std::int64_t(card.row(i, 7)));
+    const int system = reference("coordinate_system", to_id(card.row(i, 7)));
     const Vec3d velocity = to_global(system, row_triple(card, i, 1));
     const Vec3d angular = to_global(system, row_triple(card, i, 4));
     if (!v.nodes.empty() && !(equal(velocity, v.velocity) && equal(angular, v.angular_velocity))) {
@@ -105,7 +105,7 @@ void Resolver::read_initial_generation(const Card& card) {
   v.point = triple(card, "xc", "yc", "zc");
   Vec3d axis = triple(card, "nx", "ny", "nz");
   if (axis.x == -999) {
-    const int from = node(std::int64_t(axis.y)), to = node(std::int64_t(axis.z));
+    const int from = node(to_id(axis.y)), to = node(to_id(axis.z));
     axis = from >= 0 && to >= 0 ? model_.nodes.x[to] - model_.nodes.x[from] : Vec3d{0, 0, 0};
   } else {
     axis = to_global(system, axis);
@@ -125,9 +125,9 @@ void Resolver::read_initial_generation(const Card& card) {
 void Resolver::read_initial_rigid(const Card& card) {
   for (int i = 0; i < card.row_count(); ++i) {
     InitialVelocity v;
-    const int p = part(std::int64_t(card.row(i, 0)));
+    const int p = part(to_id(card.row(i, 0)));
     if (p < 0) continue;
-    const int system = reference("coordinate_system", std::int64_t(card.row(i, 7)));
+    const int system = reference("coordinate_system", to_id(card.row(i, 7)));
     v.parts = {p};
     v.velocity = to_global(system, row_triple(card, i, 1));
     v.angular_velocity = to_global(system, row_triple(card, i, 4));
@@ -159,18 +159,18 @@ void Resolver::read_node_load(const Card& card) {
   const std::string_view name = card.schema->name;
   for (int i = 0; i < card.row_count(); ++i) {
     NodalLoad load;
-    const auto id = std::int64_t(card.row(i, 0));
+    const auto id = to_id(card.row(i, 0));
     if (name == "LOAD_RIGID_BODY")
       load.part = part(id);
     else if (name == "LOAD_NODE_SET")
       load.nodes = set_or_all(id);
     else if (const int n = node(id); n >= 0)
       load.nodes = {n};
-    load.dof = int(card.row(i, 1));
-    load.curve = reference("curve", std::int64_t(card.row(i, 2)));
+    load.dof = to_int(card.row(i, 1));
+    load.curve = reference("curve", to_id(card.row(i, 2)));
     load.scale = card.row(i, 3) != 0 ? card.row(i, 3) : 1;
-    load.local_system = reference("coordinate_system", std::int64_t(card.row(i, 4)));
-    for (int k = 0; k < 3; ++k) load.follower[k] = node(std::int64_t(card.row(i, 5 + k)));
+    load.local_system = reference("coordinate_system", to_id(card.row(i, 4)));
+    for (int k = 0; k < 3; ++k) load.follower[k] = node(to_id(card.row(i, 5 + k)));
     model_.nodal_loads.push_back(std::move(load));
   }
 }
@@ -244,7 +244,7 @@ void Resolver::read_part_damping(const Card& card) {
     return;
   }
   for (int i = 0; i < card.row_count(); ++i) {
-    const auto id = std::int64_t(card.row(i, 0));
+    const auto id = to_id(card.row(i, 0));
     d.parts.clear();
     if (name.ends_with("_SET")) {
       if (const int s = reference("part_set", id); s >= 0) d.parts = model_.part_sets[s].parts;

@@ -23,14 +23,14 @@ void Resolver::read_control(const Card& card) {
     c.hourglass.linear_viscosity = nonzero(card, "q2", 0.06);
   } else if (name == "CONTROL_SHELL") {
     c.shell_update = card.integer("istupd");
-    c.shell_warping = int(nonzero(card, "bwc", 2));
+    c.shell_warping = to_int(nonzero(card, "bwc", 2));
     c.shell_projection = card.integer("proj");
-    c.shell_theory = int(nonzero(card, "theory", 2));
+    c.shell_theory = to_int(nonzero(card, "theory", 2));
   } else if (name == "CONTROL_CONTACT") {
     read_control_contact(card);
   } else if (name == "CONTROL_ACCURACY") {
     c.objective_update = card.integer("osu");
-    c.node_numbering = int(nonzero(card, "inn", 1));
+    c.node_numbering = to_int(nonzero(card, "inn", 1));
   }
 }
 
@@ -51,7 +51,7 @@ void Resolver::read_control_contact(const Card& card) {
   c.contact_scale = nonzero(card, "slsfac", 0.1);
   c.rigid_wall_penalty = card.real("rwpnal");
   c.shell_thickness_option = card.integer("shlthk");
-  c.penalty_option = int(nonzero(card, "penopt", 1));
+  c.penalty_option = to_int(nonzero(card, "penopt", 1));
   c.tied_projection = card.integer("tiedprj") == 0;
   c.contact_ignore = card.integer("ignore");
   c.contact_orientation = int(nonzero(card, "orien", 1));
@@ -78,7 +78,7 @@ void Resolver::read_database(const Card& card) {
 
 void Resolver::read_extent(const Card& card) {
   model_.output.write_strains = card.integer("strflg") % 10 != 0;
-  model_.output.shell_layers = int(nonzero(card, "maxint", 3));
+  model_.output.shell_layers = to_int(nonzero(card, "maxint", 3));
 }
 
 void Resolver::read_history(const Card& card) {
@@ -103,7 +103,7 @@ void Resolver::read_history(const Card& card) {
   };
   for (int r = 0; r < card.row_count(); ++r)
     for (int c = 0; c < (named ? 1 : card.columns()); ++c) {
-      const auto id = std::int64_t(card.row(r, c));
+      const auto id = to_id(card.row(r, c));
       if (id == 0) continue;
       if (name.starts_with("NODE")) {
         const auto add = [&](int n) {

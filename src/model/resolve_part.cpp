@@ -51,7 +51,7 @@ void Resolver::read_section(const Card& card) {
   switch (s.family) {
     case Family::shell: {
       if (s.formulation == 0) s.formulation = model_.controls.shell_theory;
-      s.through_thickness_points = int(nonzero(card, "nip", 2));
+      s.through_thickness_points = to_int(nonzero(card, "nip", 2));
       s.shear_factor = nonzero(card, "shrf", 1);
       const double t1 = card.real("t1");
       s.thickness = {t1, nonzero(card, "t2", t1), nonzero(card, "t3", t1), nonzero(card, "t4", t1)};
@@ -81,7 +81,7 @@ void Resolver::read_section(const Card& card) {
 void Resolver::read_beam_section(const Card& card, Section& s) {
   if (s.formulation == 0) s.formulation = 1;
   s.shear_factor = nonzero(card, "shrf", 1);
-  s.quadrature = int(nonzero(card, "qr", 2));
+  s.quadrature = to_int(nonzero(card, "qr", 2));
   s.cross_section = card.integer("cst");
   s.scoor = card.real("scoor");
   s.ts1 = card.real("ts1"), s.ts2 = nonzero(card, "ts2", s.ts1);
@@ -130,7 +130,7 @@ void Resolver::read_rigid_material(const Card& card, Material& m) {
   bool vectors = false;
   for (const char* field : {"a2", "a3", "v1", "v2", "v3"}) vectors |= card.real(field) != 0;
   if (!vectors && lco > 0 && lco == std::floor(lco))
-    m.local_system = reference("coordinate_system", std::int64_t(lco));
+    m.local_system = reference("coordinate_system", to_id(lco));
 }
 
 void Resolver::read_eos(const Card& card) {
@@ -140,7 +140,7 @@ void Resolver::read_eos(const Card& card) {
 void Resolver::read_hourglass(const Card& card) {
   const Hourglass& control = model_.controls.hourglass;
   Hourglass h;
-  h.type = int(nonzero(card, "ihq", control.type));
+  h.type = to_int(nonzero(card, "ihq", control.type));
   h.coefficient = nonzero(card, "qm", 0.1);
   h.quadratic_viscosity = nonzero(card, "q1", 1.5);
   h.linear_viscosity = nonzero(card, "q2", 0.06);
@@ -210,8 +210,8 @@ std::optional<InertiaOverride> Resolver::read_inertia(const Card& card,
 
 void Resolver::read_deformable_to_rigid(const Card& card) {
   for (int i = 0; i < card.row_count(); ++i) {
-    const auto id = std::int64_t(card.row(i, 0));
-    const int lead = part(std::int64_t(card.row(i, 1)));
+    const auto id = to_id(card.row(i, 0));
+    const int lead = part(to_id(card.row(i, 1)));
     const bool is_set = card.row_text(i, 2).starts_with("PSET");
     std::vector<int> parts;
     if (is_set) {

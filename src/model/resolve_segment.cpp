@@ -15,8 +15,8 @@ void Resolver::read_segment_set(const Card& card) {
       std::array<int, 4> s;
       bool complete = true;
       for (int k = 0; k < 4; ++k) {
-        std::int64_t id = std::int64_t(card.row(r, k));
-        if (k == 3 && id == 0) id = std::int64_t(card.row(r, 2));
+        std::int64_t id = to_id(card.row(r, k));
+        if (k == 3 && id == 0) id = to_id(card.row(r, 2));
         s[k] = node(id);
         if (s[k] >= 0) continue;
         complete = false;
@@ -42,13 +42,13 @@ bool Resolver::general_segments(const Card& card, std::vector<std::array<int, 4>
     const std::string option(card.row_text(r, 0));
     if (option == "SEG") {
       std::array<int, 4> s;
-      for (int k = 0; k < 4; ++k) s[k] = node(std::int64_t(card.row(r, k + 1)));
+      for (int k = 0; k < 4; ++k) s[k] = node(to_id(card.row(r, k + 1)));
       if (s[3] < 0) s[3] = s[2];
       if (*std::min_element(s.begin(), s.end()) >= 0) segments.push_back(s);
       continue;
     }
     for (int c = 1; c < card.columns(); ++c) {
-      const auto id = std::int64_t(card.row(r, c));
+      const auto id = to_id(card.row(r, c));
       if (id == 0) continue;
       if (option == "PART") {
         if (const int p = part(id); p >= 0) segments_of_part(p, segments);

@@ -62,7 +62,7 @@ bool refers(std::string_view keyword) {
 std::vector<std::int64_t> row_values(const Card& card, int row) {
   std::vector<std::int64_t> values;
   for (int c = 1; c < card.columns(); ++c)
-    if (card.row(row, c) != 0) values.push_back(std::int64_t(card.row(row, c)));
+    if (card.row(row, c) != 0) values.push_back(to_id(card.row(row, c)));
   return values;
 }
 
@@ -105,7 +105,7 @@ std::vector<std::int64_t> Resolver::generated_ids(const Card& card,
   std::sort(sorted.begin(), sorted.end());
   for (int r = 0; r < card.row_count(); ++r)
     for (int c = 0; c + 1 < card.columns(); c += 2) {
-      const auto low = std::int64_t(card.row(r, c)), high = std::int64_t(card.row(r, c + 1));
+      const auto low = to_id(card.row(r, c)), high = to_id(card.row(r, c + 1));
       if (low == 0) continue;
       const auto from = std::lower_bound(sorted.begin(), sorted.end(), low);
       const auto to = std::upper_bound(from, sorted.end(), std::max(low, high));

@@ -1,0 +1,235 @@
+// *INCLUDE_TRANSFORM, *NODE_TRANSFORM and what follows from files that are missing.
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+
+#include "deck/reader.h"
+#include "model/affine.h"
+
+using namespace fabrica;
+namespace fs = std::filesystem;
+
+namespace {
+
+// a folder of decks that lives as long as the test
+struct Folder {
+  fs::path path = fs::temp_directory_path() / ("fabrica-deck-" + std::to_string(getpid()));
+  explicit Folder(const std::map<std::string, std::string>& files) {
+    fs::create_directories(path);
+    for (const auto& [name, text] : files) std::ofstream(path / name) << text;
+  }
+  ~Folder() { fs::remove_all(path); }
+};
+
+std::string all_of(const Diagnostics& d) {
+  std::string text;
+  for (const Diagnostic& x : d.list()) text += d.format(x) + "\n";
+  return text;
+}
+
+int count_of(const Diagnostics& d, Severity severity, std::string_view name) {
+  int n = 0;
+  for (const Diagnostic& x : d.list()) n += x.severity == severity && x.name == name;
+  return n;
+}
+
+void check_point(const Vec3d& x, double a, double b, double c) {
+  // rounding of coordinates up to 2000
+  CHECK(norm(x - Vec3d{a, b, c}) < 2e-12);
+}
+
+const std::string head = "*KEYWORD\n*CONTROL_TERMINATION\n       1.0\n";
+
+// a tetrahedron in metres, kilogrammes, seconds
+const std::string body = R"(*KEYWORD
+*NODE
+       1              1.              0.              0.
+       2              2.              0.              0.
+       3              1.              1.              0.
+       4              1.              0.              1.
+*ELEMENT_SOLID
+       1       1       1       2       3       4       4       4       4       4
+*PART
+body
+         1         1         1
+*SECTION_SOLID
+         1        10
+*MAT_ELASTIC
+         1    1000.0     2.0e9       0.3
+*SET_NODE_LIST
+         7
+         1         2
+*DEFINE_COORDINATE_NODES
+         9         1         2         3
+*INITIAL_VELOCITY
+         7
+       3.0       0.0       0.0
+*END
+)";
+
+}  // namespace
+
+// x' = R (l x) + t: a quarter turn about z through the origin, then a move
+TEST_CASE(
+    "include transform: ids are shifted, points moved, values converted to the units of the deck") {
+  const Folder folder({{"body.k", body}, {"main.k", head + R"(*DEFINE_TRANSFORMATION
+         3
+ROTATE         0.0       0.0       1.0       0.0       0.0       0.0      90.0
+TRANSL       100.0      20.0       3.0
+*INCLUDE_TRANSFORM
+body.k
+       100      2000     30000       400     50000         6        70
+         8
+       1.0    1000.0    1000.0
+         3
+*END
+)"}});
+  Diagnostics d;
+  const auto model = read_deck(folder.path / "main.k", d);
+  REQUIRE_MESSAGE(!d.has_errors(), all_of(d));
+  REQUIRE(model->nodes.size() == 4);
+  CHECK(model->nodes.id[0] == 101);
+  check_point(model->nodes.x[0], 100, 1020, 3);
+  check_point(model->nodes.x[1], 100, 2020, 3);
+  check_point(model->nodes.x[2], -900, 1020, 3);
+  CHECK(model->solids.id[0] == 2001);
+  CHECK(model->parts[0].id == 30001);
+  CHECK(model->materials[0].id == 401);
+  CHECK(model->node_sets[0].id == 50007);
+  CHECK(model->node_sets[0].nodes == std::vector<int>{0, 1});
+  CHECK(model->coordinate_systems[0].id == 79);
+  // kg/m3 -> kg/mm3, Pa = kg/(m s2) -> kg/(mm ms2), m/s = mm/ms
+  CHECK(model->materials[0].density == doctest::Approx(1e-6));
+  for (const auto& card : model->cards)
+    if (card->schema->name == "MAT_ELASTIC") CHECK(card->real("e") == doctest::Approx(2.0));
+  REQUIRE(model->initial_velocities.size() == 1);
+  CHECK(model->initial_velocities[0].velocity.x == doctest::Approx(3.0));
+}
+
+// outer map after inner map, in whichever file each was defined
+TEST_CASE("include transform: nested placements act one after the other") {
+  const std::string turn =
+      "*DEFINE_TRANSFORMATION\n         1\nROTATE         0.0       0.0       1.0       0.0"
+      "       0.0       0.0      90.0\n";
+  const Folder folder(
+      {{"body.k", body},
+       {"inner.k",
+        "*KEYWORD\n*DEFINE_TRANSFORMATION\n         1\nTRANSL         1.0\n"
+        "*INCLUDE_TRANSFORM\nbody.k\n        10        10        10        10        10"
+        "        10        10\n\n\n         1\n*END\n"},
+       {"main.k", head + turn +
+                      "*INCLUDE_TRANSFORM\ninner.k\n       100       100       100       100"
+                      "       100       100       100\n\n       1.0    1000.0    1000.0\n"
+                      "         1\n*END\n"}});
+  Diagnostics d;
+  const auto model = read_deck(folder.path / "main.k", d);
+  REQUIRE_MESSAGE(!d.has_errors(), all_of(d));
+  CHECK(model->nodes.id[0] == 111);
+  // (1, 0, 0) m -> (2, 0, 0) m -> (0, 2000, 0) mm
+  check_point(model->nodes.x[0], 0, 2000, 0);
+}
+
+// mirror at the plane x = 5, scale, and a turn about the line of two points; det A tells a mirror
+// from a turn
+TEST_CASE("transformations: mirror, scale and a turn about two points") {
+  Card card("DEFINE_TRANSFORMATION");
+  card.add_row("MIRROR", {5, 0, 0, 6, 0, 0});
+  card.add_row("SCALE", {1, 2, 1});
+  card.add_row("POINT", {1, 0, 0, 0});
+  card.add_row("POINT", {2, 0, 0, 4});
+  card.add_row("ROTATE", {1, 2, 180});
+  std::string problem;
+  const auto map = affine_of(card, problem);
+  REQUIRE_MESSAGE(map.has_value(), problem);
+  // (1, 1, 1) -> (9, 1, 1) -> (9, 2, 1) -> (-9, -2, 1)
+  check_point((*map)({1, 1, 1}), -9, -2, 1);
+  CHECK(det(map->a) == doctest::Approx(-2));
+}
+
+TEST_CASE(
+    "node transform: the nodes of a set move, one move after the other, and systems of nodes "
+    "follow") {
+  std::string text =
+      head + body.substr(body.find("*NODE\n"), body.rfind("*INITIAL") - body.find("*NODE\n"));
+  text +=
+      "*DEFINE_TRANSFORMATION\n         1\nTRANSL        10.0\n*DEFINE_TRANSFORMATION\n         2\n"
+      "ROTATE         0.0       0.0       1.0       0.0       0.0       0.0      90.0\n"
+      "*NODE_TRANSFORM\n         1         7\n         2         7\n*END\n";
+  Diagnostics d;
+  const auto model = read_deck_text(text, "deck", d);
+  // (1, 0, 0) -> (11, 0, 0) -> (0, 11, 0); node 3 is not in the set
+  check_point(model->nodes.x[0], 0, 11, 0);
+  check_point(model->nodes.x[1], 0, 12, 0);
+  check_point(model->nodes.x[2], 1, 1, 0);
+  check_point(model->coordinate_systems[0].origin, 0, 11, 0);
+  CHECK(model->coordinate_systems[0].axes(0, 1) == doctest::Approx(1));
+  CHECK_MESSAGE(d.count(Severity::unsupported) == 0, all_of(d));
+
+  text.replace(text.find("         2         7\n"), 20, "         5         7\n");
+  Diagnostics wrong;
+  read_deck_text(text, "deck", wrong);
+  CHECK(count_of(wrong, Severity::error, "missing-transformation") == 1);
+}
+
+TEST_CASE("missing file: it is the only error, whatever leads nowhere without it") {
+  std::string set = "*SET_NODE_LIST\n         1\n";
+  for (int i = 1; i <= 50; ++i)
+    set += std::string(10 - std::to_string(i).size(), ' ') + std::to_string(i) + "\n";
+  const std::string rest = set +
+                           "*DEFINE_COORDINATE_NODES\n         9         1         2         3\n"
+                           "*BOUNDARY_SPC_SET\n         1         9         1\n*END\n";
+  const Folder folder(
+      {{"main.k", "*KEYWORD\n*INCLUDE\nmesh.k\n" + rest}, {"whole.k", head + rest}});
+  Diagnostics d;
+  read_deck(folder.path / "main.k", d);
+  CHECK_MESSAGE(d.count(Severity::error) == 1, all_of(d));
+  CHECK(count_of(d, Severity::error, "missing-file") == 1);
+  CHECK(count_of(d, Severity::note, "missing-node") == 1);
+
+  // with every file there, each case counts: 50 of the set, 3 of the system, which itself is known
+  Diagnostics whole;
+  read_deck(folder.path / "whole.k", whole);
+  CHECK_MESSAGE(whole.count(Severity::error) == 53, all_of(whole));
+  CHECK(count_of(whole, Severity::error, "missing-coordinate-system") == 0);
+  CHECK(int(whole.list().size()) < 25);
+}
+
+TEST_CASE("parameters: the first of two definitions counts unless told otherwise") {
+  const auto height = [](const std::string& first, const std::string& keyword) {
+    Diagnostics d;
+    const std::string text =
+        head + first + "\n" + keyword +
+        "\nR  height        1.0\n*PARAMETER\nR  height        2.0\n" +
+        "*NODE\n       1         &height              0.              0.\n*END\n";
+    const auto model = read_deck_text(text, "deck", d);
+    CHECK(count_of(d, Severity::warning, "duplicate-parameter") ==
+          (first.empty() && keyword == "*PARAMETER" ? 1 : 0));
+    return model->nodes.x[0].x;
+  };
+  CHECK(height("", "*PARAMETER") == 1.0);
+  CHECK(height("", "*PARAMETER_MUTABLE") == 2.0);
+  CHECK(height("*PARAMETER_DUPLICATION\n         4", "*PARAMETER") == 2.0);
+  CHECK(height("*PARAMETER_DUPLICATION\n         5\n*PARAMETER_DUPLICATION\n         4",
+               "*PARAMETER") == 1.0);
+}
+
+TEST_CASE("shell section: angles of its layers are read by point, eight a line") {
+  const std::string text =
+      head +
+      "*SECTION_SHELL\n         1         2       1.0         9       0.0         0         1\n"
+      "       1.0       1.0       1.0       1.0\n"
+      "       0.0      45.0      90.0     -45.0       0.0      10.0      20.0      30.0\n"
+      "      40.0\n*END\n";
+  Diagnostics d;
+  const auto model = read_deck_text(text, "deck", d);
+  CHECK_MESSAGE(d.count(Severity::error) + d.count(Severity::unsupported) == 0, all_of(d));
+  for (const auto& card : model->cards)
+    if (card->schema->name == "SECTION_SHELL") {
+      CHECK(card->real("b2") == 45);
+      CHECK(card->real("b9") == 40);
+    }
+}
