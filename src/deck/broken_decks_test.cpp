@@ -1,4 +1,5 @@
-// Broken decks: each names in its first line the diagnostic that it must raise, and the line it must point at.
+// Broken decks: each names in its first line the diagnostic that it must raise, and the line it
+// must point at.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "deck/reader.h"
+#include "model/check.h"
 
 using namespace fabrica;
 
@@ -24,13 +26,17 @@ TEST_CASE("broken decks: each problem is named at its line") {
     in >> dollar >> expect >> name >> word >> line;
     REQUIRE(expect == "expect:");
     Diagnostics diagnostics;
-    read_deck(path, diagnostics);
+    // what could be read is checked too, as the command does
+    if (const auto model = read_deck(path, diagnostics))
+      format_check(check_model(*model, diagnostics), diagnostics);
     bool found = false;
     std::string all;
     for (const Diagnostic& d : diagnostics.list()) {
       found = found || (d.name == name && d.where.line == line);
       all += diagnostics.format(d) + "\n";
     }
-    CHECK_MESSAGE(found, path.filename().string() << ": expected " << name << " at line " << line << ", got\n" << all);
+    CHECK_MESSAGE(found, path.filename().string()
+                             << ": expected " << name << " at line " << line << ", got\n"
+                             << all);
   }
 }

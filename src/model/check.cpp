@@ -204,6 +204,8 @@ class Checker {
     Measure m;
     std::array<int, 8> c{};
     const bool ten = n[8] >= 0;
+    if (*std::min_element(n.begin(), n.begin() + (ten ? 10 : 8)) < 0)
+      return m;  // a node is missing
     int distinct = ten ? 4 : distinct_corners(n, c);
     if (ten) c = {0, 1, 2, 3};
     if (distinct < 4) return m;

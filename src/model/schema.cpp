@@ -1,6 +1,8 @@
 #include "model/schema.h"
 
 #include <algorithm>
+#include <mutex>
+#include <unordered_map>
 
 #include "model/schema_text.h"
 
@@ -46,15 +48,27 @@ int edit_distance(std::string_view a, std::string_view b, int limit) {
 
 }  // namespace
 
-Vocabulary::Vocabulary() {
-  for (const std::string_view text : embedded_keyword_texts()) parse_schema(text, keywords_, problems_);
+struct Vocabulary::Content {
+  std::vector<KeywordText> texts;
+  std::unordered_map<std::string_view, int> names;
+  std::vector<KeywordSchema> keywords;  // one a text; those not read yet are empty
+  std::vector<std::uint8_t> read;
+  std::vector<std::string> problems;
+  std::mutex reading;
+};
+
+Vocabulary::Vocabulary() : content_(std::make_unique<Content>()) {
+  for (const std::string_view text : embedded_keyword_texts())
+    split_schema(text, content_->texts, content_->problems);
   index();
 }
 
-Vocabulary::Vocabulary(std::string_view text) {
-  parse_schema(text, keywords_, problems_);
+Vocabulary::Vocabulary(std::string_view text) : content_(std::make_unique<Content>()) {
+  split_schema(text, content_->texts, content_->problems);
   index();
 }
+
+Vocabulary::~Vocabulary() = default;
 
 const Vocabulary& Vocabulary::get() {
   static const Vocabulary vocabulary;
@@ -62,30 +76,54 @@ const Vocabulary& Vocabulary::get() {
 }
 
 void Vocabulary::index() {
-  for (int i = 0; i < int(keywords_.size()); ++i) {
-    if (!names_.emplace(keywords_[i].name, i).second) problems_.push_back("twice: " + keywords_[i].name);
-    for (const std::string& alias : keywords_[i].aliases)
-      if (!names_.emplace(alias, i).second) problems_.push_back("twice: " + alias);
+  Content& c = *content_;
+  c.keywords.resize(c.texts.size());
+  c.read.resize(c.texts.size());
+  for (int i = 0; i < int(c.texts.size()); ++i)
+    for (const std::string_view name : c.texts[i].names)
+      if (!c.names.emplace(name, i).second) c.problems.push_back("twice: " + std::string(name));
+}
+
+const KeywordSchema& Vocabulary::schema(int i) const {
+  Content& c = *content_;
+  const std::lock_guard lock(c.reading);
+  if (!c.read[i]) {
+    std::vector<KeywordSchema> one;
+    parse_schema(c.texts[i].text, one, c.problems, c.texts[i].line);
+    if (!one.empty()) c.keywords[i] = std::move(one.front());
+    c.read[i] = 1;
   }
+  return c.keywords[i];
+}
+
+const std::vector<KeywordSchema>& Vocabulary::all() const {
+  for (int i = 0; i < int(content_->texts.size()); ++i) schema(i);
+  return content_->keywords;
+}
+
+const std::vector<std::string>& Vocabulary::problems() const {
+  all();
+  return content_->problems;
 }
 
 int Vocabulary::canonical(std::string_view name) const {
-  const auto it = names_.find(std::string(name));
-  return it == names_.end() ? -1 : it->second;
+  const auto it = content_->names.find(name);
+  return it == content_->names.end() ? -1 : it->second;
 }
 
 const KeywordSchema* Vocabulary::find(std::string_view name) const {
   const int i = canonical(name);
-  return i < 0 ? nullptr : &keywords_[i];
+  return i < 0 ? nullptr : &schema(i);
 }
 
-const KeywordSchema* Vocabulary::find(std::string_view keyword, std::vector<std::string>& options) const {
+const KeywordSchema* Vocabulary::find(std::string_view keyword,
+                                      std::vector<std::string>& options) const {
   // the longest known name whose remainder consists of its options
   for (std::size_t length = keyword.size(); length != keyword.npos && length > 0;
        length = keyword.rfind('_', length - 1)) {
     const int i = canonical(keyword.substr(0, length));
     options.clear();
-    if (i >= 0 && take_options(keyword.substr(length), keywords_[i], options)) return &keywords_[i];
+    if (i >= 0 && take_options(keyword.substr(length), schema(i), options)) return &schema(i);
   }
   options.clear();
   return nullptr;
@@ -94,9 +132,9 @@ const KeywordSchema* Vocabulary::find(std::string_view keyword, std::vector<std:
 std::vector<std::string> Vocabulary::suggest(std::string_view keyword, int count) const {
   const int limit = std::max(2, int(keyword.size()) / 4);
   std::vector<std::pair<int, std::string>> near;
-  for (const auto& [name, i] : names_) {
+  for (const auto& [name, i] : content_->names) {
     const int d = edit_distance(keyword.substr(0, 80), name, limit);
-    if (d <= limit) near.emplace_back(d, name);
+    if (d <= limit) near.emplace_back(d, std::string(name));
   }
   std::sort(near.begin(), near.end());
   std::vector<std::string> names;

@@ -2,9 +2,9 @@
 // The vocabulary of the keyword format, read from the .kw files that are compiled into the program.
 // Reader, writer, checks and manual pages all come from these tables.
 #include <limits>
+#include <memory>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
 namespace fabrica {
@@ -28,20 +28,23 @@ struct FieldSchema {
   double maximum = std::numeric_limits<double>::infinity();
   bool exclusive_minimum = false;  // value must be greater than minimum
   bool required = false;
-  std::string reference;  // kind of entity that a non-zero value must name: node, part, section, material, curve,
-                          // table, hourglass, node_set, part_set, segment_set, box, coordinate_system, ...
+  std::string reference;  // kind of entity that a non-zero value must name: node, part, section,
+                          // material, curve, table, hourglass, node_set, part_set, segment_set,
+                          // box, coordinate_system, ...
   Support support = Support::full;  // of a value that is neither blank nor the default
-  std::string supported_values;     // "0 1": integer values that are supported although support is not full
-  std::string unit;                 // "stress", "mass/length^3", ...
+  std::string
+      supported_values;  // "0 1": integer values that are supported although support is not full
+  std::string unit;      // "stress", "mass/length^3", ...
   std::string help;
 };
 
 struct CardSchema {
   std::vector<FieldSchema> fields;
-  std::string condition;    // expression over earlier fields and options, e.g. "n == 0"; empty: always there
-  bool optional = false;    // may be missing at the end of the block
-  bool repeats = false;     // repeats to the end of the block: its rows form the card's table
-  bool title = false;       // one 80-column text line
+  std::string
+      condition;  // expression over earlier fields and options, e.g. "n == 0"; empty: always there
+  bool optional = false;  // may be missing at the end of the block
+  bool repeats = false;   // repeats to the end of the block: its rows form the card's table
+  bool title = false;     // one 80-column text line
 };
 
 struct KeywordSchema {
@@ -51,34 +54,38 @@ struct KeywordSchema {
   std::string summary;
   std::string category;  // for the manual: "material", "contact", ...
   Support support = Support::full;
-  std::string reason;           // why ignored or unsupported
-  bool repeats_whole = false;   // the whole card group may occur again in one block (PART, SECTION_*)
+  std::string reason;  // why ignored or unsupported
+  bool repeats_whole =
+      false;  // the whole card group may occur again in one block (PART, SECTION_*)
   std::vector<CardSchema> cards;
 };
 
-// The schema of all keywords. Built once from the embedded .kw texts.
+// The schema of all keywords, from the embedded .kw texts. Only their names are indexed at the
+// start; a keyword is read when it is first asked for. Safe to ask from several threads.
 class Vocabulary {
  public:
   static const Vocabulary& get();
-  // Finds the schema for a keyword as it stands in a deck ("MAT_PIECEWISE_LINEAR_PLASTICITY_TITLE"), resolving
-  // aliases; options receives the suffixes found. Null if unknown.
+  // Finds the schema for a keyword as it stands in a deck
+  // ("MAT_PIECEWISE_LINEAR_PLASTICITY_TITLE"), resolving aliases; options receives the suffixes
+  // found. Null if unknown.
   const KeywordSchema* find(std::string_view keyword, std::vector<std::string>& options) const;
   const KeywordSchema* find(std::string_view canonical) const;
   // known names near a misspelt one, best first
   std::vector<std::string> suggest(std::string_view keyword, int count = 3) const;
-  const std::vector<KeywordSchema>& all() const { return keywords_; }
-  // A vocabulary of its own from .kw text, for tests.
+  const std::vector<KeywordSchema>& all() const;
+  // A vocabulary of its own from .kw text, which must outlive it; for tests.
   explicit Vocabulary(std::string_view text);
+  ~Vocabulary();
   // what is wrong with the .kw texts, "line N: ..."; empty in a sound build
-  const std::vector<std::string>& problems() const { return problems_; }
+  const std::vector<std::string>& problems() const;
 
  private:
+  struct Content;
   Vocabulary();
   void index();
   int canonical(std::string_view name) const;
-  std::vector<KeywordSchema> keywords_;
-  std::unordered_map<std::string, int> names_;
-  std::vector<std::string> problems_;
+  const KeywordSchema& schema(int i) const;
+  std::unique_ptr<Content> content_;
 };
 
 }  // namespace fabrica

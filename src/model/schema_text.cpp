@@ -140,7 +140,8 @@ class SchemaParser {
   bool attribute(FieldSchema& f, std::string_view word) {
     const std::size_t equals = word.find('=');
     const std::string_view name = word.substr(0, equals);
-    const std::string_view value = equals == word.npos ? std::string_view{} : word.substr(equals + 1);
+    const std::string_view value =
+        equals == word.npos ? std::string_view{} : word.substr(equals + 1);
     double number = 0;
     const bool numeric = to_number(value, number);
     if (name == "required" && value.empty()) return f.required = true;
@@ -170,12 +171,45 @@ class SchemaParser {
 
 }  // namespace
 
-void parse_schema(std::string_view text, std::vector<KeywordSchema>& keywords, std::vector<std::string>& problems) {
-  SchemaParser parser(keywords, problems);
+void split_schema(std::string_view text, std::vector<KeywordText>& keywords,
+                  std::vector<std::string>& problems) {
+  const std::size_t before = keywords.size();
+  const char* begin = text.data();  // of the keyword that is being cut
+  const char* const end = text.data() + text.size();
+  const auto close = [&](const char* here) {
+    if (keywords.size() > before) keywords.back().text = {begin, std::size_t(here - begin)};
+  };
   int number = 0;
   while (!text.empty()) {
+    const std::string_view line = text.substr(0, text.find('\n'));
+    ++number;
+    if (line.starts_with("keyword ")) {
+      close(line.data());
+      begin = line.data();
+      KeywordText& k = keywords.emplace_back();
+      k.names = words_of(line.substr(8));
+      k.line = number;
+      if (k.names.size() != 1)
+        problems.push_back("line " + std::to_string(number) + ": a keyword has one name");
+      k.names.resize(1);
+    } else if (line.starts_with("alias ") && keywords.size() > before) {
+      for (const std::string_view name : words_of(line.substr(6)))
+        keywords.back().names.push_back(name);
+    } else if (keywords.size() == before && line.find_first_not_of(" \t\r") != line.npos &&
+               line[0] != '#') {
+      problems.push_back("line " + std::to_string(number) + ": text before the first keyword");
+    }
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+  }
+  close(end);
+}
+
+void parse_schema(std::string_view text, std::vector<KeywordSchema>& keywords,
+                  std::vector<std::string>& problems, int line) {
+  SchemaParser parser(keywords, problems);
+  while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
-    parser.line(text.substr(0, end), ++number);
+    parser.line(text.substr(0, end), line++);
     text.remove_prefix(std::min(end + 1, text.size()));
   }
 }
