@@ -40,6 +40,12 @@ ADDED = [
     ["thyrohyoid", "neck", "R", "hyoid", "head", 40.0, -16.0, -50.0, "manubrium", "thorax", 85.0, -12.0, 130.0, "points",
      100, 20, 2, "", "", 1, 0, "", "passive infrahyoid muscles; estimated", "estimated"],
 ]
+# membrane between tibia and fibula, a strand for each 30 mm: E 1170 MPa, 0.54 mm thick, 18 mm wide
+# (VIVA+ v0.2.5, Minns-Hunter 1976); k = E t 30 / 18
+ADDED += [[f"interosseous_membrane_leg_{z}", "leg", "R", "tibia", "tibia_R", 0.0, -10.0, z + 10.0, "fibula", "tibia_R",
+           round(5 - 0.03 * z, 1), round(-24 - 0.046 * z, 1), float(z), "points", 18, 16, 1050, "", "", 1, 0, "",
+           "1170 MPa, 0.54 mm (VIVA+ v0.2.5, Minns-Hunter 1976), a strand for each 30 mm; places estimated", "read"]
+          for z in range(60, 331, 30)]
 SHORTEST = 4.0  # [mm] reference length of ligaments that the source drew shorter: fibres run along the joint, not across
 
 

@@ -172,6 +172,26 @@ std::vector<std::array<PieceNode, 4>> ArticulationMaker::layer(const Articulatio
   return faces;
 }
 
+// Takes out the faces with a corner behind the other side's faces: a contact starts without
+// penetration.
+void take_out_penetrating(std::vector<std::array<PieceNode, 4>>& faces,
+                          const std::vector<std::array<PieceNode, 4>>& others) {
+  std::vector<Point> nodes;
+  std::vector<Quad> quads;
+  for (const auto& face : others) {
+    const int first = int(nodes.size());
+    for (const PieceNode& n : face) nodes.push_back(n.x);
+    quads.push_back({first, first + 1, first + 2, first + 3});
+  }
+  const BoneSurface surface(nodes, quads);
+  std::erase_if(faces, [&](const std::array<PieceNode, 4>& face) {
+    return std::any_of(face.begin(), face.end(), [&](const PieceNode& n) {
+      const SurfacePoint there = surface.nearest(n.x, 3);
+      return there.quad >= 0 && there.distance < 0.02;
+    });
+  });
+}
+
 void ArticulationMaker::sliding(const Articulation& joint, const Patch& a, const Patch& b,
                                 ArticulationReport& report) {
   report.contact_gap = 1e30;
@@ -181,6 +201,8 @@ void ArticulationMaker::sliding(const Articulation& joint, const Patch& a, const
   contact.source = "friction of cartilage on cartilage 0.02; estimated";
   contact.a.quads = layer(joint, joint.a, joint.b, a, joint.cartilage_a, report.contact_gap);
   contact.b.quads = layer(joint, joint.b, joint.a, b, joint.cartilage_b, report.contact_gap);
+  if (!contact.b.quads.empty()) take_out_penetrating(contact.a.quads, contact.b.quads);
+  if (!contact.a.quads.empty()) take_out_penetrating(contact.b.quads, contact.a.quads);
   if (!contact.a.quads.empty() && !contact.b.quads.empty())
     between_.contacts.push_back(std::move(contact));
   capsule(joint, a, b);
