@@ -29,9 +29,6 @@ void check_options(const Model& model, const Contact& c, Diagnostics& diagnostic
     diagnostics.warning(name, c.where, "CONTACT", field,
                         "contact " + std::to_string(c.id) + ": " + message);
   };
-  if (c.kind == ContactKind::automatic_general)
-    warn("contact-general-edges", "",
-         "beams and free edges do not touch each other, only surfaces do");
   if (c.ignore == 0 && model.controls.contact_ignore == 0 && !is_tied(c.kind))
     warn("contact-ignore-0", "ignore",
          "nodes that penetrate at the start stay where they are; their penetration is not pushed "
@@ -104,6 +101,8 @@ void Contacts::add_contact(const Model& model, int index, const SurfaceSource& s
   };
   ContactSurface a = source.build(contact, contact.a, false);
   if (is_single(contact.kind)) {
+    if (contact.kind == ContactKind::automatic_general)
+      edge_passes_.push_back(std::make_unique<EdgePass>(model, contact, index, a, carriers_));
     if (contact.soft == 2)
       segment_passes_.push_back(
           std::make_unique<SegmentPass>(model, contact, index, a, a, true, carriers_));
@@ -140,6 +139,7 @@ void Contacts::forces(const Model&, State& state, Team& team) {
   // step
   for (auto& pass : passes_) pass->forces(state, team, dt > 0 ? dt : initial_dt_);
   for (auto& pass : segment_passes_) pass->forces(state, team, dt > 0 ? dt : initial_dt_);
+  for (auto& pass : edge_passes_) pass->forces(state, dt > 0 ? dt : initial_dt_);
   tied_->forces(state);
   if (!report_complete_) complete_report();
 }
@@ -149,6 +149,8 @@ void Contacts::complete_report() {
   for (const auto& pass : passes_)
     for (const InitialPenetration& p : pass->initial_penetrations()) report_.worst.push_back(p);
   for (const auto& pass : segment_passes_)
+    for (const InitialPenetration& p : pass->initial_penetrations()) report_.worst.push_back(p);
+  for (const auto& pass : edge_passes_)
     for (const InitialPenetration& p : pass->initial_penetrations()) report_.worst.push_back(p);
   report_.penetrating_nodes = int(report_.worst.size());
   std::stable_sort(report_.worst.begin(), report_.worst.end(),
@@ -160,6 +162,7 @@ void Contacts::complete_report() {
 void Contacts::account(State& state) {
   for (auto& pass : passes_) pass->account(state);
   for (auto& pass : segment_passes_) pass->account(state);
+  for (auto& pass : edge_passes_) pass->account(state);
   tied_->account(state);
 }
 
@@ -177,6 +180,7 @@ std::vector<ContactCheck> Contacts::checks() const {
   };
   for (const auto& pass : passes_) add(pass);
   for (const auto& pass : segment_passes_) add(pass);
+  for (const auto& pass : edge_passes_) add(pass);
   return list;
 }
 
@@ -205,6 +209,11 @@ std::vector<Contacts::Resultant> Contacts::resultants() const {
     r.energy_a += 0.5 * pass->energy(), r.energy_b += 0.5 * pass->energy();
     r.friction_energy += pass->friction_energy();
   }
+  for (const auto& pass : edge_passes_) {
+    Resultant& r = list[pass->contact_index()];
+    r.energy_a += 0.5 * pass->energy(), r.energy_b += 0.5 * pass->energy();
+    r.friction_energy += pass->friction_energy();
+  }
   for (Resultant& r : list)
     if (r.contact >= 0 && tied_->has_ties(r.contact)) {
       r.side_a = tied_->force_of(r.contact);
@@ -226,6 +235,10 @@ void Contacts::each_force(Visit visit) const {
       for (const SegmentForce& f : chunk)
         visit(pass->first().segments[f.first].node[0], pass->second().segments[f.second].node[0],
               f.normal + f.friction);
+  for (const auto& pass : edge_passes_)
+    for (const EdgeForce& f : pass->active_forces())
+      visit(pass->surface().edges[f.first].node[0], pass->surface().edges[f.second].node[0],
+            f.normal + f.friction);
 }
 
 void Contacts::add_to_transducers(std::vector<Resultant>& list) const {
@@ -244,11 +257,13 @@ void Contacts::save(std::ostream& out) const {
   tied_->save(out);
   for (const auto& pass : passes_) pass->save(out);
   for (const auto& pass : segment_passes_) pass->save(out);
+  for (const auto& pass : edge_passes_) pass->save(out);
 }
 void Contacts::load(std::istream& in) {
   tied_->load(in);
   for (auto& pass : passes_) pass->load(in);
   for (auto& pass : segment_passes_) pass->load(in);
+  for (auto& pass : edge_passes_) pass->load(in);
 }
 
 }  // namespace fabrica

@@ -13,6 +13,7 @@
 #include "solver/contact_pass.h"
 #include "solver/contact_surface.h"
 #include "solver/contact_tied.h"
+#include "solver/edge_pass.h"
 #include "solver/segment_pass.h"
 
 namespace fabrica {
@@ -94,6 +95,7 @@ class Contacts {
   std::unique_ptr<TiedNodes> tied_;
   std::vector<std::unique_ptr<ContactPass>> passes_;
   std::vector<char> second_pass_;                             // tracked side is b
+  std::vector<std::unique_ptr<EdgePass>> edge_passes_;        // AUTOMATIC_GENERAL
   std::vector<std::unique_ptr<SegmentPass>> segment_passes_;  // SOFT=2
   std::vector<Transducer> transducers_;
   std::vector<Resultant> fixed_;  // masses

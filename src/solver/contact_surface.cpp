@@ -241,19 +241,53 @@ void SurfaceSource::add_set(const SegmentSet& set, const Contact& contact, bool 
   }
 }
 
-void SurfaceSource::add_beam_nodes(const ContactSide& side, ContactSurface& s) const {
+// of the round bar with the area of the section
+double SurfaceSource::beam_radius(int beam) const {
+  const Section& section = model_.sections[model_.parts[model_.beams.part[beam]].section];
+  const double area = section.area > 0 ? section.area : M_PI / 4 * section.ts1 * section.ts1;
+  return std::sqrt(area / M_PI);
+}
+
+std::vector<int> SurfaceSource::beams_of(const ContactSide& side) const {
   std::vector<bool> wanted(model_.parts.size(), false);
   for (int p : side.parts) wanted[p] = true;
+  std::vector<int> beams;
   for (int e = 0; e < model_.beams.size(); ++e) {
     const int part = model_.beams.part[e];
-    if (part < 0 || !wanted[part] || model_.parts[part].section < 0) continue;
-    const Section& section = model_.sections[model_.parts[part].section];
-    const double area = section.area > 0 ? section.area : M_PI / 4 * section.ts1 * section.ts1;
+    if (part >= 0 && wanted[part] && model_.parts[part].section >= 0) beams.push_back(e);
+  }
+  return beams;
+}
+
+void SurfaceSource::add_beam_nodes(const ContactSide& side, ContactSurface& s) const {
+  for (int e : beams_of(side))
     for (int i = 0; i < 2; ++i) {
       ContactNode n;
-      n.node = model_.beams.node[e][i], n.part = part, n.half_thickness = std::sqrt(area / M_PI);
+      n.node = model_.beams.node[e][i], n.part = model_.beams.part[e],
+      n.half_thickness = beam_radius(e);
       s.nodes.push_back(n);
     }
+}
+
+void SurfaceSource::add_beam_edges(const ContactSide& side, ContactSurface& s) const {
+  for (int e : beams_of(side)) {
+    const int a = model_.beams.node[e][0], b = model_.beams.node[e][1];
+    const int body = node_body_[a] == node_body_[b] ? node_body_[a] : -1;
+    s.edges.push_back({{a, b}, model_.beams.part[e], body, -1, beam_radius(e)});
+  }
+}
+
+void SurfaceSource::add_shell_edges(ContactSurface& s) const {
+  for (int g = 0; g < int(s.segments.size()); ++g) {
+    const ContactSegment& segment = s.segments[g];
+    const int corners = segment.triangle ? 3 : 4;
+    for (int i = 0; i < corners && segment.shell; ++i)
+      if (segment.free_features >> i & 1)
+        s.edges.push_back({{segment.node[i], segment.node[(i + 1) % corners]},
+                           segment.part,
+                           segment.body,
+                           g,
+                           segment.half_thickness});
   }
 }
 
@@ -342,6 +376,7 @@ ContactSurface SurfaceSource::build(const Contact& contact, const ContactSide& s
       if (model_.shells.part[e] >= 0 && wanted[model_.shells.part[e]])
         add_shell(e, contact, reference, s);
     add_beam_nodes(side, s);
+    if (contact.kind == ContactKind::automatic_general) add_beam_edges(side, s);
   }
   // a box keeps what starts inside it
   if (side.box >= 0) {
@@ -356,8 +391,11 @@ ContactSurface SurfaceSource::build(const Contact& contact, const ContactSide& s
       return std::any_of(g.node, g.node + 4, outside);
     });
     std::erase_if(s.nodes, [&](const ContactNode& n) { return outside(n.node); });
+    std::erase_if(s.edges,
+                  [&](const ContactEdge& e) { return outside(e.node[0]) || outside(e.node[1]); });
   }
   collect_nodes(contact, s);
+  if (contact.kind == ContactKind::automatic_general) add_shell_edges(s);
   return s;
 }
 

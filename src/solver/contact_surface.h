@@ -43,8 +43,18 @@ struct ContactNode {
   Vec3d normal{};        // mean outward normal where the segments have an outside; else zero
 };
 
+// A beam, or a free edge of a shell.
+struct ContactEdge {
+  int node[2];
+  int part = -1;
+  int body = -1;     // rigid body it belongs to, or -1
+  int segment = -1;  // of the surface, whose edge it is
+  double radius = 0;
+};
+
 struct ContactSurface {
   std::vector<ContactSegment> segments;
+  std::vector<ContactEdge> edges;  // of AUTOMATIC_GENERAL only
   std::vector<ContactNode> nodes;  // ascending node index
 };
 
@@ -72,6 +82,10 @@ class SurfaceSource {
   void add_shell(int shell, const Contact& contact, bool reference, ContactSurface& s) const;
   void add_set(const SegmentSet& set, const Contact& contact, bool reference,
                ContactSurface& s) const;
+  std::vector<int> beams_of(const ContactSide& side) const;
+  double beam_radius(int beam) const;
+  void add_beam_edges(const ContactSide& side, ContactSurface& s) const;
+  void add_shell_edges(ContactSurface& s) const;
   void add_beam_nodes(const ContactSide& side, ContactSurface& s) const;
   void add_set_nodes(const NodeSet& set, ContactSurface& s) const;
   double density(int part) const;
