@@ -221,7 +221,7 @@ void ContactPass::node_forces(State& state, const ActiveNode& active, int chunk)
   const int used = select(state, active, list, count, accepted);
   if (used == 0) {
     if (slots[0].segment >= 0 &&
-        slots[0].depth > 0.5 * release_depth(active.tracked, slots[0].segment))
+        slots[0].depth - slots[0].baseline > 0.5 * release_depth(active.tracked, slots[0].segment))
       ++chunk_penetration_[chunk].released;
     remember_sides(list, count);
     for (int k = 0; k < max_slots; ++k) slots[k] = {};

@@ -130,7 +130,7 @@ void SegmentPass::pair_force(State& state, Pair& pair, int chunk) {
         push(state, pair, o, face, chunk);
       else
         pair.friction = {0, 0, 0};
-    } else if (was_touching && pair.depth > 0.5 * (thickness + limit)) {
+    } else if (was_touching && pair.depth - pair.baseline > 0.5 * (thickness + limit)) {
       ++chunk_penetration_[chunk].released;
     }
   }
