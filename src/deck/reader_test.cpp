@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <sstream>
 #include <string>
 
@@ -15,7 +16,8 @@ using namespace fabrica;
 TEST_CASE("vocabulary: the compiled texts follow their grammar") {
   for (const std::string& problem : Vocabulary::get().problems()) FAIL_CHECK(problem);
   std::vector<std::string> options;
-  const KeywordSchema* k = Vocabulary::get().find("CONTACT_AUTOMATIC_SINGLE_SURFACE_MPP_ID", options);
+  const KeywordSchema* k =
+      Vocabulary::get().find("CONTACT_AUTOMATIC_SINGLE_SURFACE_MPP_ID", options);
   REQUIRE(k);
   CHECK(k->name == "CONTACT_AUTOMATIC_SINGLE_SURFACE");
   CHECK(options == std::vector<std::string>{"MPP", "ID"});
@@ -29,7 +31,8 @@ TEST_CASE("numbers: Fortran forms, and nothing that is not a finite number") {
   CHECK(parse_real("-7.83000E-6") == -7.83e-6);
   CHECK(parse_real(".5") == 0.5);
   CHECK(parse_real("+5.") == 5.0);
-  for (const char* bad : {"nan", "inf", "1e999", "1 2", "1.2.3", "e5", "--1", "", "+", "1e"}) CHECK_FALSE(parse_real(bad));
+  for (const char* bad : {"nan", "inf", "1e999", "1 2", "1.2.3", "e5", "--1", "", "+", "1e"})
+    CHECK_FALSE(parse_real(bad));
   CHECK(parse_integer("0.0") == 0);
   CHECK(parse_integer("12.") == 12);
   CHECK_FALSE(parse_integer("1.5"));
@@ -106,7 +109,8 @@ TEST_CASE("writer: reading back gives the same bits, in short and in long format
   for (const char* x : {".333333333333333", "0.33333333333333331", "0.12345678901234567"}) {
     std::string text = cube;
     text.replace(text.find(".333333333333333"), 16, std::string("&third").insert(0, 10, ' '));
-    text.replace(text.find("*CONTROL"), 0, std::string("*PARAMETER_EXPRESSION\nR third   ") + x + "\n");
+    text.replace(text.find("*CONTROL"), 0,
+                 std::string("*PARAMETER_EXPRESSION\nR third   ") + x + "\n");
     Diagnostics d;
     const auto model = read_deck_text(text, "cube", d);
     REQUIRE_FALSE(d.has_errors());
@@ -117,5 +121,27 @@ TEST_CASE("writer: reading back gives the same bits, in short and in long format
     REQUIRE_MESSAGE(!again.has_errors(), out.str());
     CHECK(copy->nodes.x[7].x == model->nodes.x[7].x);
     CHECK_MESSAGE(copy->content_hash() == model->content_hash(), out.str());
+  }
+}
+
+// No double may grow out of its 20 columns into those of the next field.
+TEST_CASE("writer: numbers of 17 digits keep to their columns") {
+  for (const char* x :
+       {"-.033312000000333124", "-3.3312000000333124E-13", "-1.2345678901234567E+123",
+        "1.2345678901234567E-300", "-1.0976931348623157E+308"}) {
+    std::string text = cube;
+    text.replace(text.find(".333333333333333"), 16, std::string("&third").insert(0, 10, ' '));
+    text.replace(text.find("*CONTROL"), 0,
+                 std::string("*PARAMETER_EXPRESSION\nR third   ") + x + "\n");
+    Diagnostics d;
+    const auto model = read_deck_text(text, "cube", d);
+    std::stringstream out;
+    write_deck(*model, out);
+    Diagnostics again;
+    const auto copy = read_deck_text(out.str(), "copy", again);
+    const double sent = model->nodes.x[7].x;
+    CHECK(std::abs(copy->nodes.x[7].x - sent) <= 1e-14 * std::abs(sent));
+    CHECK(copy->nodes.x[7].y == model->nodes.x[7].y);
+    CHECK(copy->nodes.x[7].z == model->nodes.x[7].z);
   }
 }

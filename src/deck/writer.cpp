@@ -20,33 +20,43 @@ std::string shortest(double v) {
   return std::string(buffer, p);
 }
 
-// At most 20 characters for any double: the exponent loses its letter e and its leading zeros.
+// A number in scientific form, such as -3.25e-02, without the letter e and the leading zeros of the
+// exponent; without the point too, where that is what makes it fit: -3.25-2, -325-4.
+std::string compact(const std::string& scientific, int width) {
+  const std::size_t e = scientific.find('e');
+  std::string mantissa = scientific.substr(0, e), exponent = scientific.substr(e + 1);
+  const char sign = exponent[0];
+  exponent.erase(0, std::min(exponent.find_first_not_of("+-0"), exponent.size() - 1));
+  const std::string text = mantissa + sign + exponent;
+  const std::size_t point = mantissa.find('.');
+  if (int(text.size()) <= width || point == std::string::npos) return text;
+  const int power = std::stoi(sign + exponent) - int(mantissa.size() - point - 1);
+  return mantissa.erase(point, 1) + (power < 0 ? "" : "+") + std::to_string(power);
+}
+
+// The shortest text that reads back as v. A number that needs 17 digits, a sign and two digits of
+// exponent has 21 characters: where 20 columns are all there is, it loses its last digit, 1e-16 of
+// it.
 std::string real_text(double v, int width) {
   std::string text = shortest(v);
   if (text.find_first_of(".e") == std::string::npos && int(text.size()) < width) text += '.';
   if (int(text.size()) <= width) return text;
   char buffer[40];
-  const auto [p, err] = std::to_chars(buffer, buffer + sizeof buffer, v, std::chars_format::scientific);
-  text.assign(buffer, p);
-  const std::size_t e = text.find('e');
-  std::string exponent = text.substr(e + 1);
-  const char sign = exponent[0];
-  exponent.erase(0, std::min(exponent.find_first_not_of("+-0"), exponent.size() - 1));
-  std::string mantissa = text.substr(0, e);
-  // without the point the mantissa is an integer: shift the exponent
-  std::string compact = mantissa + sign + exponent;
-  if (int(compact.size()) <= width) return compact;
-  const std::size_t point = mantissa.find('.');
-  if (point == std::string::npos) return compact;
-  const int digits = int(mantissa.size() - point - 1);
-  mantissa.erase(point, 1);
-  const int power = std::stoi(sign + exponent) - digits;
-  return mantissa + (power < 0 ? "" : "+") + std::to_string(power);
+  const auto [p, err] =
+      std::to_chars(buffer, buffer + sizeof buffer, v, std::chars_format::scientific);
+  text = compact(std::string(buffer, p), width);
+  for (int digits = 15; width >= 20 && int(text.size()) > width; --digits) {
+    const auto [q, error] =
+        std::to_chars(buffer, buffer + sizeof buffer, v, std::chars_format::scientific, digits);
+    text = compact(std::string(buffer, q), width);
+  }
+  return text;
 }
 
 class DeckWriter {
  public:
-  DeckWriter(const Model& model, std::ostream* out, bool long_fields) : model_(model), out_(out), long_(long_fields) {}
+  DeckWriter(const Model& model, std::ostream* out, bool long_fields)
+      : model_(model), out_(out), long_(long_fields) {}
   bool fits = true;  // every value so far fits its field
 
   void write() {
@@ -106,7 +116,8 @@ class DeckWriter {
     for (std::size_t i = 0; i < s.id.size(); ++i) {
       head(s.id[i], s.part[i]);
       if (s.node[i][8] >= 0) end_line();
-      for (int k = 0; k < (s.node[i][8] >= 0 ? 10 : 8); ++k) put_integer(node_id(s.node[i][std::size_t(k)]), 8);
+      for (int k = 0; k < (s.node[i][8] >= 0 ? 10 : 8); ++k)
+        put_integer(node_id(s.node[i][std::size_t(k)]), 8);
       end_line();
     }
   }
@@ -119,7 +130,8 @@ class DeckWriter {
       for (const int n : s.node[i]) put_integer(node_id(n), 8);
       end_line();
       if (!extra) continue;
-      for (std::size_t k = 0; k < 4; ++k) put_real(i < s.thickness.size() ? double(s.thickness[i][k]) : 0.0, 16);
+      for (std::size_t k = 0; k < 4; ++k)
+        put_real(i < s.thickness.size() ? double(s.thickness[i][k]) : 0.0, 16);
       put_real(i < s.beta.size() ? double(s.beta[i]) : 0.0, 16);
       end_line();
     }
@@ -133,7 +145,8 @@ class DeckWriter {
       for (const int n : b.node[i]) put_integer(node_id(n), 8);
       end_line();
       if (!vectors) continue;
-      for (int k = 0; k < 3; ++k) put_real(i < b.orientation.size() ? b.orientation[i][k] : 0.0, 10);
+      for (int k = 0; k < 3; ++k)
+        put_real(i < b.orientation.size() ? b.orientation[i][k] : 0.0, 10);
       end_line();
     }
   }
@@ -143,7 +156,8 @@ class DeckWriter {
     for (std::size_t i = 0; i < d.id.size(); ++i) {
       head(d.id[i], d.part[i]);
       for (const int n : d.node[i]) put_integer(node_id(n), 8);
-      put_integer(d.orientation[i] < 0 ? 0 : model_.sd_orientations[std::size_t(d.orientation[i])].id, 8);
+      put_integer(
+          d.orientation[i] < 0 ? 0 : model_.sd_orientations[std::size_t(d.orientation[i])].id, 8);
       put_real(d.scale[i], 16);
       put_integer(0, 8);
       put_real(d.offset[i], 16);
@@ -185,7 +199,9 @@ class DeckWriter {
       put_real(value, f.width);
     }
   }
-  void gap(const FieldSchema& f, int end) { line_.append(std::size_t(std::max(0, f.column - end)) * (long_ ? 2 : 1), ' '); }
+  void gap(const FieldSchema& f, int end) {
+    line_.append(std::size_t(std::max(0, f.column - end)) * (long_ ? 2 : 1), ' ');
+  }
 
   void write_card(const Card& card) {
     std::string name = "*" + card.schema->name;
@@ -209,12 +225,14 @@ class DeckWriter {
         text(card.title + "\n");
         continue;
       }
-      if (!c.fields.empty() && c.fields[0].name == "ampersand" && !card.values_given[begin]) continue;
+      if (!c.fields.empty() && c.fields[0].name == "ampersand" && !card.values_given[begin])
+        continue;
       int end = 0;
       for (std::size_t i = 0; i < c.fields.size(); ++i) {
         gap(c.fields[i], end);
         end = c.fields[i].column + c.fields[i].width;
-        field(c.fields[i], card.values[begin + i], card.values_given[begin + i] != 0, card.texts[begin + i]);
+        field(c.fields[i], card.values[begin + i], card.values_given[begin + i] != 0,
+              card.texts[begin + i]);
       }
       end_line();
     }
@@ -246,7 +264,8 @@ class DeckWriter {
           gap(c.fields[i], end);
           end = c.fields[i].column + c.fields[i].width;
           const int k = begin + int(i);
-          field(c.fields[i], card.row(r, k), card.row_given(r, k), std::string(card.row_text(r, k)));
+          field(c.fields[i], card.row(r, k), card.row_given(r, k),
+                std::string(card.row_text(r, k)));
         }
         end_line();
       }
