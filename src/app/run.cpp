@@ -234,11 +234,17 @@ int run_command(const RunCommand& c) {
                simulation.elements(), options.threads, seconds_since(read_start));
 
   Output output(c, simulation, started_at);
-  const Sampler sampler{[&](double t) { return output.wants(t); }, [&] { output.sample(); }};
-  std::signal(SIGINT, request_stop);
-  std::signal(SIGTERM, request_stop);
   const auto start = Clock::now();
   auto last_line = start;
+  bool line_due = false;  // a line is printed from a sample, where all energies are those of one time
+  const Sampler sampler{[&](double t) { return line_due || output.wants(t); },
+                        [&] {
+                          output.sample();
+                          if (line_due) progress(simulation, started_at, seconds_since(start));
+                          line_due = false;
+                        }};
+  std::signal(SIGINT, request_stop);
+  std::signal(SIGTERM, request_stop);
   double next_restart = c.restart_interval > 0 ? started_at + c.restart_interval : 1e300;
   while (simulation.ending() == Ending::running && !stop_requested) {
     simulation.step(sampler);
@@ -248,7 +254,7 @@ int run_command(const RunCommand& c) {
     }
     if (!c.quiet && simulation.state().cycle % 20 == 0 && seconds_since(last_line) > 5) {
       last_line = Clock::now();
-      progress(simulation, started_at, seconds_since(start));
+      line_due = true;
     }
   }
   if (stop_requested) simulation.stop("stopped by a signal");
