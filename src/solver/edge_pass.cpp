@@ -96,20 +96,7 @@ void EdgePass::search(const State& state) {
     boxes.push_back(box);
   }
   const PointBoxPairs found = find_pairs(middles, boxes, Filter(*this));
-  std::vector<Pair> next;
-  std::size_t old = 0;
-  for (int i = 0; i < size(); ++i)
-    for (int p = found.first[i]; p < found.first[i + 1]; ++p) {
-      Pair pair{i, found.box[p]};
-      auto before = [&](const Pair& q) {
-        return q.first < i || (q.first == i && q.second < pair.second);
-      };
-      while (old < pairs_.size() && before(pairs_[old])) ++old;
-      if (old < pairs_.size() && pairs_[old].first == i && pairs_[old].second == pair.second)
-        pair = pairs_[old];
-      next.push_back(pair);
-    }
-  pairs_ = std::move(next);
+  pairs_ = carry_over(found, pairs_);
   reference_.resize(nodes_.size());
   for (std::size_t i = 0; i < nodes_.size(); ++i) reference_[i] = state.nodes[nodes_[i]].x;
 }

@@ -123,20 +123,7 @@ void SegmentPass::search(const State& state) {
   }
   const Filter filter(first_, second_, first_box, second_box, single_, carriers_, model_.nodes.x);
   const PointBoxPairs found = find_pairs(centres, reached, filter);
-  std::vector<Pair> next;
-  std::size_t old = 0;
-  for (int i = 0; i < int(centres.size()); ++i)
-    for (int p = found.first[i]; p < found.first[i + 1]; ++p) {
-      Pair pair{i, found.box[p]};
-      auto before = [&](const Pair& q) {
-        return q.first < i || (q.first == i && q.second < pair.second);
-      };
-      while (old < pairs_.size() && before(pairs_[old])) ++old;
-      if (old < pairs_.size() && pairs_[old].first == i && pairs_[old].second == pair.second)
-        pair = pairs_[old];
-      next.push_back(pair);
-    }
-  pairs_ = std::move(next);
+  pairs_ = carry_over(found, pairs_);
   remember(state, outer_reference_);
 }
 

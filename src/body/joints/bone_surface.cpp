@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "body/mesh/distance_field.h"
+
 namespace fabrica::body {
 
 namespace {
@@ -16,28 +18,6 @@ Point unit(const Point& a) {
 
 Point quad_normal(const Point& a, const Point& b, const Point& c, const Point& d) {
   return unit(cross(c - a, d - b));
-}
-
-// Voronoi regions of vertices, edges and face (Ericson, Real-Time Collision Detection, 2005, 5.1.5)
-Point nearest_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c) {
-  const Point ab = b - a, ac = c - a, ap = p - a;
-  const double d1 = dot(ab, ap), d2 = dot(ac, ap);
-  if (d1 <= 0 && d2 <= 0) return a;
-  const Point bp = p - b;
-  const double d3 = dot(ab, bp), d4 = dot(ac, bp);
-  if (d3 >= 0 && d4 <= d3) return b;
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + (d1 / (d1 - d3)) * ab;
-  const Point cp = p - c;
-  const double d5 = dot(ab, cp), d6 = dot(ac, cp);
-  if (d6 >= 0 && d5 <= d6) return c;
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + (d2 / (d2 - d6)) * ac;
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
-    return b + ((d4 - d3) / ((d4 - d3) + (d5 - d6))) * (c - b);
-  const double sum = 1 / (va + vb + vc);
-  return a + (vb * sum) * ab + (vc * sum) * ac;
 }
 
 BoneSurface::BoneSurface(const std::vector<Point>& nodes,
@@ -104,7 +84,7 @@ SurfacePoint BoneSurface::nearest(const Point& p, double reach) const {
   visit(p - r, p + r, [&](std::size_t c) {
     for (int k : cells_[c]) {
       const Triangle& t = triangles_[std::size_t(k)];
-      const Point x = nearest_on_triangle(p, t.a, t.b, t.c);
+      const Point x = closest_on_triangle(p, t.a, t.b, t.c);
       const double distance = norm(p - x);
       if (distance > least + 1e-9) continue;
       // at an edge or corner the face that p sees most squarely decides about inside and outside

@@ -53,7 +53,5 @@ class BoneSurface {
 
 // unit outward normal of a quad
 Point quad_normal(const Point& a, const Point& b, const Point& c, const Point& d);
-// nearest point of a triangle to p
-Point nearest_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c);
 
 }  // namespace fabrica::body
