@@ -10,10 +10,10 @@ THREADS ?= $(shell nproc)
 FABRICA := build/fabrica
 OUT     ?= out
 
-.PHONY: help demo test build bench validate format clean packages
+.PHONY: help demo test build bench validate format format-check clean packages
 
 help: ## list these targets
-	@grep -E '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## (.*)/  make \1\t\2/' | expand -t 18
+	@grep -E '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 18
 
 packages:
 	@missing=(); \
@@ -63,8 +63,13 @@ bench: build ## speed of the kernels and of whole models
 validate: build ## run the cases that are not up to date, compare them, write their pages
 	@$(FABRICA) validate --out $(OUT)/validation --threads $(THREADS)
 
+SOURCE_DIRS := src tests tools
+SOURCES := .*\.\(h\|cpp\|cc\|cu\|cuh\)
 format: ## lay out the sources by .clang-format
-	@git ls-files 'src/*.h' 'src/*.cpp' 'src/*.cu' 'tests/*.cpp' 'bench/*.cpp' | xargs -r clang-format -i
+	@find $(SOURCE_DIRS) -regex '$(SOURCES)' | xargs clang-format -i
+
+format-check: ## fail where a source is laid out otherwise
+	@find $(SOURCE_DIRS) -regex '$(SOURCES)' | xargs -P $(JOBS) -n 40 clang-format --dry-run -Werror
 
 clean: ## remove what was built; results in out/ stay
 	@rm -rf build build-*/ build.log

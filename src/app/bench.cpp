@@ -18,7 +18,9 @@ namespace fabrica {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
+double seconds_since(Clock::time_point t) {
+  return std::chrono::duration<double>(Clock::now() - t).count();
+}
 
 struct Row {
   std::string name;
@@ -32,7 +34,8 @@ struct Row {
 double bytes_per_element(const Simulation& s) {
   const Tiles& t = s.tiles();
   double bytes = 2.0 * double(t.state_.size() * sizeof(Real)) + double(t.connectivity.size() * 2);
-  bytes += double(t.node.size()) * (64 + sizeof(int) + 2 * sizeof(ForceRecord) * (t.any_rotations ? 2 : 1));
+  bytes += double(t.node.size()) *
+           (64 + sizeof(int) + 2 * sizeof(ForceRecord) * (t.any_rotations ? 2 : 1));
   bytes += double(s.state().nodes.size()) * (64 * 2 + 3 * 24 * (t.any_rotations ? 2 : 1));
   return bytes / std::max(1, s.elements());
 }
@@ -83,8 +86,10 @@ Row kernel_only(const std::string& name, const Model& model, double seconds) {
 
 int bench_command(const BenchCommand& c) {
   const Machine machine = measure_machine();
-  fmt::print("machine: {} {}, one core {:.1f} GB/s triad, {:.0f} Gflop/s peak {} (fused multiply-add)\n", machine.name,
-             machine.instruction_set, machine.triad, machine.peak, sizeof(Real) == 4 ? "float" : "double");
+  fmt::print(
+      "machine: {} {}, one core {:.1f} GB/s triad, {:.0f} Gflop/s peak {} (fused multiply-add)\n",
+      machine.name, machine.instruction_set, machine.triad, machine.peak,
+      sizeof(Real) == 4 ? "float" : "double");
   using Make = std::function<std::unique_ptr<Model>(int, Diagnostics&)>;
   struct Case {
     std::string name;
@@ -96,18 +101,23 @@ int bench_command(const BenchCommand& c) {
                         {"shells, 5 points, J2", bench_shells, flops_of_shell()},
                         {"two brick blocks in contact", bench_contact, flops_of_brick()}};
   nlohmann::ordered_json out = nlohmann::json::array();
-  fmt::print("{:<34} {:>8} {:>7} {:>10} {:>7} {:>8} {:>7} {:>7} {:>7}\n", "case", "elements", "threads", "million/s",
-             "ns", "Gflop/s", "of peak", "GB/s", "of triad");
+  fmt::print("{:<34} {:>8} {:>7} {:>10} {:>7} {:>8} {:>7} {:>7} {:>7}\n", "case", "elements",
+             "threads", "million/s", "ns", "Gflop/s", "of peak", "GB/s", "of triad");
   auto show = [&](Row r, int threads, double flops) {
     r.flops = flops;
     const double gflops = r.millions * flops * 1e-3, gbytes = r.millions * r.bytes * 1e-3;
-    fmt::print("{:<34} {:>8} {:>7} {:>10.2f} {:>7.1f} {:>8.1f} {:>6.0f}% {:>7.1f} {:>6.0f}%\n", r.name, r.elements, threads,
-               r.millions, 1e3 / r.millions, gflops, 100 * gflops / (machine.peak * threads), gbytes,
-               100 * gbytes / machine.triad);
+    fmt::print("{:<34} {:>8} {:>7} {:>10.2f} {:>7.1f} {:>8.1f} {:>6.0f}% {:>7.1f} {:>6.0f}%\n",
+               r.name, r.elements, threads, r.millions, 1e3 / r.millions, gflops,
+               100 * gflops / (machine.peak * threads), gbytes, 100 * gbytes / machine.triad);
     std::fflush(stdout);
-    out.push_back({{"case", r.name}, {"elements", r.elements}, {"threads", threads},
-                   {"million_updates_per_second", r.millions}, {"bytes_per_element", r.bytes},
-                   {"flops_per_element", r.flops}, {"gflops", gflops}, {"gbytes_per_second", gbytes}});
+    out.push_back({{"case", r.name},
+                   {"elements", r.elements},
+                   {"threads", threads},
+                   {"million_updates_per_second", r.millions},
+                   {"bytes_per_element", r.bytes},
+                   {"flops_per_element", r.flops},
+                   {"gflops", gflops},
+                   {"gbytes_per_second", gbytes}});
   };
   for (const auto& [name, make, flops] : cases) {
     if (name.find(c.only) == std::string::npos) continue;
@@ -117,12 +127,17 @@ int bench_command(const BenchCommand& c) {
       for (const auto& x : d.list()) fmt::print(stderr, "{}\n", d.format(x));
       return 1;
     }
-    if (name.find("contact") == std::string::npos) show(kernel_only("  kernel: " + name, *model, 0.3 * c.seconds), 1, flops);
-    for (int threads = 1; threads <= c.threads; threads *= 2) show(whole_loop(name, *model, threads, c.seconds), threads, flops);
+    if (name.find("contact") == std::string::npos)
+      show(kernel_only("  kernel: " + name, *model, 0.3 * c.seconds), 1, flops);
+    for (int threads = 1; threads <= c.threads; threads *= 2)
+      show(whole_loop(name, *model, threads, c.seconds), threads, flops);
   }
-  fmt::print("flops are counted per element (kernel only); bytes are what the data layout moves once per cycle. Kernels are\n"
-             "bound by dependent arithmetic and shuffles, whole loops of large models by memory: node lines, partial forces\n"
-             "and history pass through the caches once per cycle.\n");
+  fmt::print(
+      "flops are counted per element (kernel only); bytes are what the data layout moves once per "
+      "cycle. Kernels are\n"
+      "bound by dependent arithmetic and shuffles, whole loops of large models by memory: node "
+      "lines, partial forces\n"
+      "and history pass through the caches once per cycle.\n");
   if (!c.json.empty()) std::ofstream(c.json) << out.dump(2) << "\n";
   return 0;
 }
@@ -130,7 +145,8 @@ int bench_command(const BenchCommand& c) {
 void add_bench(CLI::App& app, BenchCommand& c) {
   auto* bench = app.add_subcommand("bench", "Time this program on this machine");
   c.threads = int(std::thread::hardware_concurrency());
-  bench->add_option("--threads", c.threads, "largest number of threads to time")->capture_default_str();
+  bench->add_option("--threads", c.threads, "largest number of threads to time")
+      ->capture_default_str();
   bench->add_option("--elements", c.elements, "elements per case")->capture_default_str();
   bench->add_option("--seconds", c.seconds, "time per case")->capture_default_str();
   bench->add_option("--only", c.only, "only cases whose name contains this");

@@ -5,13 +5,16 @@
 namespace fabrica {
 namespace {
 
-void add_controls(Builder& b) {
-  b.add_card("CONTROL_TERMINATION").set("endtim", 1.0);
-}
+void add_controls(Builder& b) { b.add_card("CONTROL_TERMINATION").set("endtim", 1.0); }
 
 void add_steel(Builder& b, int id) {
   b.add_card("MAT_PLASTIC_KINEMATIC")
-      .set("mid", id).set("ro", 7.85e-6).set("e", 210).set("pr", 0.3).set("sigy", 0.3).set("etan", 2.1);
+      .set("mid", id)
+      .set("ro", 7.85e-6)
+      .set("e", 210)
+      .set("pr", 0.3)
+      .set("sigy", 0.3)
+      .set("etan", 2.1);
 }
 
 void add_part(Builder& b, int id, int section, int material) {
@@ -22,17 +25,22 @@ void add_part(Builder& b, int id, int section, int material) {
 }
 
 // nx x ny x nz cells of edge h; node and element ids start after the given ones
-void add_bricks(Builder& b, int part, int nx, int ny, int nz, double h, Vec3d at, std::int64_t node0, std::int64_t element0) {
-  auto id = [&](int i, int j, int k) { return node0 + 1 + i + std::int64_t(nx + 1) * (j + std::int64_t(ny + 1) * k); };
+void add_bricks(Builder& b, int part, int nx, int ny, int nz, double h, Vec3d at,
+                std::int64_t node0, std::int64_t element0) {
+  auto id = [&](int i, int j, int k) {
+    return node0 + 1 + i + std::int64_t(nx + 1) * (j + std::int64_t(ny + 1) * k);
+  };
   for (int k = 0; k <= nz; ++k)
     for (int j = 0; j <= ny; ++j)
-      for (int i = 0; i <= nx; ++i) b.add_node(id(i, j, k), {at.x + h * i, at.y + h * j, at.z + h * k});
+      for (int i = 0; i <= nx; ++i)
+        b.add_node(id(i, j, k), {at.x + h * i, at.y + h * j, at.z + h * k});
   std::int64_t e = element0;
   for (int k = 0; k < nz; ++k)
     for (int j = 0; j < ny; ++j)
       for (int i = 0; i < nx; ++i) {
-        const std::int64_t n[8] = {id(i, j, k), id(i + 1, j, k), id(i + 1, j + 1, k), id(i, j + 1, k),
-                                   id(i, j, k + 1), id(i + 1, j, k + 1), id(i + 1, j + 1, k + 1), id(i, j + 1, k + 1)};
+        const std::int64_t n[8] = {
+            id(i, j, k),     id(i + 1, j, k),     id(i + 1, j + 1, k),     id(i, j + 1, k),
+            id(i, j, k + 1), id(i + 1, j, k + 1), id(i + 1, j + 1, k + 1), id(i, j + 1, k + 1)};
         b.add_solid(++e, part, n, 8);
       }
 }
@@ -54,7 +62,13 @@ std::unique_ptr<Model> bench_bricks(int elements, Diagnostics& diagnostics) {
   add_steel(b, 1);
   add_part(b, 1, 1, 1);
   add_velocity(b, 1, -10);
-  b.add_card("RIGIDWALL_PLANAR").set("xt", 0).set("yt", 0).set("zt", 0).set("xh", 0).set("yh", 0).set("zh", 1);
+  b.add_card("RIGIDWALL_PLANAR")
+      .set("xt", 0)
+      .set("yt", 0)
+      .set("zt", 0)
+      .set("xh", 0)
+      .set("yh", 0)
+      .set("zh", 1);
   return b.finish();
 }
 
@@ -63,20 +77,25 @@ std::unique_ptr<Model> bench_tets(int elements, Diagnostics& diagnostics) {
   add_controls(b);
   const int n = cube_side(elements / 6);
   const double h = 2.0;
-  auto id = [&](int i, int j, int k) { return std::int64_t(1) + i + std::int64_t(n + 1) * (j + std::int64_t(n + 1) * k); };
+  auto id = [&](int i, int j, int k) {
+    return std::int64_t(1) + i + std::int64_t(n + 1) * (j + std::int64_t(n + 1) * k);
+  };
   for (int k = 0; k <= n; ++k)
     for (int j = 0; j <= n; ++j)
       for (int i = 0; i <= n; ++i) b.add_node(id(i, j, k), {h * i, h * j, h * k + 0.5});
   // six tetrahedra around the cell's diagonal 1-7
-  static const int split[6][4] = {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6}, {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}};
+  static const int split[6][4] = {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6},
+                                  {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}};
   std::int64_t e = 0;
   for (int k = 0; k < n; ++k)
     for (int j = 0; j < n; ++j)
       for (int i = 0; i < n; ++i) {
-        const std::int64_t c[8] = {id(i, j, k), id(i + 1, j, k), id(i + 1, j + 1, k), id(i, j + 1, k),
-                                   id(i, j, k + 1), id(i + 1, j, k + 1), id(i + 1, j + 1, k + 1), id(i, j + 1, k + 1)};
+        const std::int64_t c[8] = {
+            id(i, j, k),     id(i + 1, j, k),     id(i + 1, j + 1, k),     id(i, j + 1, k),
+            id(i, j, k + 1), id(i + 1, j, k + 1), id(i + 1, j + 1, k + 1), id(i, j + 1, k + 1)};
         for (const auto& t : split) {
-          const std::int64_t t8[8] = {c[t[0]], c[t[1]], c[t[2]], c[t[3]], c[t[3]], c[t[3]], c[t[3]], c[t[3]]};
+          const std::int64_t t8[8] = {c[t[0]], c[t[1]], c[t[2]], c[t[3]],
+                                      c[t[3]], c[t[3]], c[t[3]], c[t[3]]};
           b.add_solid(++e, 1, t8, 8);
         }
       }
@@ -84,7 +103,13 @@ std::unique_ptr<Model> bench_tets(int elements, Diagnostics& diagnostics) {
   b.add_card("MAT_ELASTIC").set("mid", 1).set("ro", 1.1e-6).set("e", 0.5).set("pr", 0.4);
   add_part(b, 1, 1, 1);
   add_velocity(b, 1, -1);
-  b.add_card("RIGIDWALL_PLANAR").set("xt", 0).set("yt", 0).set("zt", 0).set("xh", 0).set("yh", 0).set("zh", 1);
+  b.add_card("RIGIDWALL_PLANAR")
+      .set("xt", 0)
+      .set("yt", 0)
+      .set("zt", 0)
+      .set("xh", 0)
+      .set("yh", 0)
+      .set("zh", 1);
   return b.finish();
 }
 
@@ -96,14 +121,20 @@ std::unique_ptr<Model> bench_shells(int elements, Diagnostics& diagnostics) {
   auto id = [&](int i, int j) { return std::int64_t(1) + i + std::int64_t(n + 1) * j; };
   for (int j = 0; j <= n; ++j)
     for (int i = 0; i <= n; ++i)
-      b.add_node(id(i, j), {h * i, h * j, 0.2 * std::sin(0.7 * i) * std::cos(0.4 * j)}, i == 0 ? 7 : 0, i == 0 ? 7 : 0);
+      b.add_node(id(i, j), {h * i, h * j, 0.2 * std::sin(0.7 * i) * std::cos(0.4 * j)},
+                 i == 0 ? 7 : 0, i == 0 ? 7 : 0);
   std::int64_t e = 0;
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) {
       const std::int64_t q[4] = {id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)};
       b.add_shell(++e, 1, q, 4);
     }
-  b.add_card("SECTION_SHELL").set("secid", 1).set("elform", 2).set("nip", 5).set("t1", 1.5).set("shrf", 0.8333);
+  b.add_card("SECTION_SHELL")
+      .set("secid", 1)
+      .set("elform", 2)
+      .set("nip", 5)
+      .set("t1", 1.5)
+      .set("shrf", 0.8333);
   add_steel(b, 1);
   add_part(b, 1, 1, 1);
   add_velocity(b, 1, 5);
@@ -124,7 +155,12 @@ std::unique_ptr<Model> bench_contact(int elements, Diagnostics& diagnostics) {
   add_velocity(b, 1, 5);
   add_velocity(b, 2, -5);
   Card contact("CONTACT_AUTOMATIC_SURFACE_TO_SURFACE");
-  contact.set("ssid", 1).set("msid", 2).set("sstyp", 3).set("mstyp", 3).set("fs", 0.2).set("fd", 0.2);
+  contact.set("ssid", 1)
+      .set("msid", 2)
+      .set("sstyp", 3)
+      .set("mstyp", 3)
+      .set("fs", 0.2)
+      .set("fd", 0.2);
   b.add_card(std::move(contact));
   return b.finish();
 }

@@ -1,3 +1,5 @@
+#include "model/check.h"
+
 #include <fmt/core.h>
 
 #include <fstream>
@@ -5,7 +7,6 @@
 #include "app/run.h"
 #include "deck/reader.h"
 #include "deck/writer.h"
-#include "model/check.h"
 #include "solver/simulation.h"
 
 namespace fabrica {
@@ -14,11 +15,13 @@ namespace {
 // what contacts find at the start: penetrations and ties
 void print_contacts(const Model& model, const InitialReport& r) {
   if (model.contacts.empty()) return;
-  fmt::print("contacts: {} nodes penetrate at the start, deepest {:.4g}; {} nodes tied, {} not tied\n",
-             r.penetrating_nodes, r.largest_penetration, r.tied_nodes, r.untied_nodes.size());
+  fmt::print(
+      "contacts: {} nodes penetrate at the start, deepest {:.4g}; {} nodes tied, {} not tied\n",
+      r.penetrating_nodes, r.largest_penetration, r.tied_nodes, r.untied_nodes.size());
   for (const InitialPenetration& p : r.worst)
-    fmt::print("  contact {} node {} in part {} depth {:.4g}\n", model.contacts[p.contact].id, model.nodes.id[p.node],
-               p.segment_part >= 0 ? model.parts[p.segment_part].id : 0, p.depth);
+    fmt::print("  contact {} node {} in part {} depth {:.4g}\n", model.contacts[p.contact].id,
+               model.nodes.id[p.node], p.segment_part >= 0 ? model.parts[p.segment_part].id : 0,
+               p.depth);
 }
 
 }  // namespace

@@ -40,7 +40,9 @@ inline Counted select(bool m, Counted a, Counted b) { return m ? a : b; }
 inline Counted min(Counted a, Counted b) { return a.v < b.v ? a : b; }
 inline Counted max(Counted a, Counted b) { return a.v > b.v ? a : b; }
 inline Counted abs(Counted a) { return Counted(a.v < 0 ? -a.v : a.v); }
-inline Counted fma(Counted a, Counted b, Counted c) { return ++Counted::count, Counted::one(fma(a.v, b.v, c.v)); }
+inline Counted fma(Counted a, Counted b, Counted c) {
+  return ++Counted::count, Counted::one(fma(a.v, b.v, c.v));
+}
 inline Counted sqrt(Counted a) { return Counted::one(sqrt(a.v)); }
 inline Real get(Counted a, int) { return a.v; }
 inline void set(Counted& a, int, Real v) { a.v = v; }
@@ -64,7 +66,8 @@ double count(const M& law, ElementParameters p, const double (*x)[3]) {
   p.youngs = Real(e.youngs()), p.poisson = Real(e.poisson());
   Corners<Counted, E::corners> c{};
   for (int a = 0; a < E::corners; ++a)
-    for (int d = 0; d < 3; ++d) c.x[a][d] = x[a][d], c.v[a][d] = 0.01 * x[a][(d + 1) % 3], c.w[a][d] = 0.001;
+    for (int d = 0; d < 3; ++d)
+      c.x[a][d] = x[a][d], c.v[a][d] = 0.01 * x[a][(d + 1) % 3], c.w[a][d] = 0.001;
   AlignedVector<Real> state(std::size_t(E::template state_fields<M>(p)) * block_size, Real(0));
   const StateView<Counted> s{state.data()};
   Given<Counted> g{};
@@ -77,13 +80,19 @@ double count(const M& law, ElementParameters p, const double (*x)[3]) {
   return double(Counted::count);
 }
 
-constexpr double brick[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+constexpr double brick[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
+                                {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
 
 // the card of a bilinear steel
 class Steel : public Parameters {
  public:
   double real(std::string_view f) const override {
-    return f == "ro" ? 7.85e-6 : f == "e" ? 210 : f == "pr" ? 0.3 : f == "sigy" ? 0.3 : f == "etan" ? 2.1 : 0;
+    return f == "ro"     ? 7.85e-6
+           : f == "e"    ? 210
+           : f == "pr"   ? 0.3
+           : f == "sigy" ? 0.3
+           : f == "etan" ? 2.1
+                         : 0;
   }
   bool given(std::string_view f) const override { return real(f) != 0; }
   CurveView curve(std::string_view) const override { return {}; }
@@ -105,7 +114,8 @@ double flops_of_brick() {
 double flops_of_tet() {
   constexpr double x[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const Elastic e = Elastic::from_youngs(1.1e-6, 0.5, 0.4);
-  return count<Tet4>(ElasticLaw{Real(e.density), Real(e.bulk), Real(e.shear)}, ElementParameters{}, x);
+  return count<Tet4>(ElasticLaw{Real(e.density), Real(e.bulk), Real(e.shear)}, ElementParameters{},
+                     x);
 }
 
 double flops_of_shell() {

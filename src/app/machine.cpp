@@ -11,7 +11,9 @@ namespace fabrica {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
+double seconds_since(Clock::time_point t) {
+  return std::chrono::duration<double>(Clock::now() - t).count();
+}
 
 double triad() {
   const std::size_t n = 8'000'000;  // 192 MB in all: beyond the caches

@@ -1,5 +1,6 @@
 #pragma once
-// What one core of this machine can do: peak multiply-add rate of native packs, and the memory triad.
+// What one core of this machine can do: peak multiply-add rate of native packs, and the memory
+// triad.
 #include <string>
 
 namespace fabrica {

@@ -14,20 +14,26 @@ namespace {
 
 void add_run(CLI::App& app, fabrica::RunCommand& c) {
   auto* run = app.add_subcommand("run", "Solve a keyword deck");
-  run->add_option("deck", c.deck, "keyword deck (.k, .key; also .gz, .zst)")->required()->check(CLI::ExistingFile);
+  run->add_option("deck", c.deck, "keyword deck (.k, .key; also .gz, .zst)")
+      ->required()
+      ->check(CLI::ExistingFile);
   run->add_option("--out", c.out, "folder for results (made if missing)")->capture_default_str();
   run->add_option("--threads", c.threads, "threads; 0 takes every core")->capture_default_str();
   run->add_option("--until", c.until, "end time; 0 takes the deck's")->capture_default_str();
-  run->add_option("--restart", c.restart, "continue from this restart file")->check(CLI::ExistingFile);
-  run->add_option("--restart-every", c.restart_interval, "time between restart files; 0 writes one at the end");
+  run->add_option("--restart", c.restart, "continue from this restart file")
+      ->check(CLI::ExistingFile);
+  run->add_option("--restart-every", c.restart_interval,
+                  "time between restart files; 0 writes one at the end");
   run->add_flag("--vtu", c.vtu, "also write a .vtu series for ParaView");
-  run->add_flag("--allow-unsupported", c.allow_unsupported, "run although the deck holds keywords that are not supported");
+  run->add_flag("--allow-unsupported", c.allow_unsupported,
+                "run although the deck holds keywords that are not supported");
   run->add_flag("--quiet", c.quiet, "no progress lines");
   run->callback([&c] { throw CLI::RuntimeError(fabrica::run_command(c)); });
 }
 
 void add_check(CLI::App& app, fabrica::CheckCommand& c) {
-  auto* check = app.add_subcommand("check", "Read a deck, report what it holds and what is wrong with it");
+  auto* check =
+      app.add_subcommand("check", "Read a deck, report what it holds and what is wrong with it");
   check->add_option("deck", c.deck, "keyword deck")->required()->check(CLI::ExistingFile);
   check->add_option("--write", c.write, "write the model back as one deck");
   check->callback([&c] { throw CLI::RuntimeError(fabrica::check_command(c)); });

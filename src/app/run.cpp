@@ -25,7 +25,9 @@ volatile std::sig_atomic_t stop_requested = 0;
 void request_stop(int) { stop_requested = 1; }
 
 using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
+double seconds_since(Clock::time_point t) {
+  return std::chrono::duration<double>(Clock::now() - t).count();
+}
 
 // prints diagnostics of at least a severity; returns how many
 void print(const Diagnostics& d, Severity least) {
@@ -39,18 +41,22 @@ class Output {
   Output(const RunCommand& c, const Simulation& s, double restart_time)
       : simulation_(s),
         history_(s),
-        binout_(restart_time > 0 ? std::make_unique<BinoutWriter>(c.out + "/binout", s.model().title, restart_time)
-                                 : std::make_unique<BinoutWriter>(c.out + "/binout", s.model().title)),
+        binout_(
+            restart_time > 0
+                ? std::make_unique<BinoutWriter>(c.out + "/binout", s.model().title, restart_time)
+                : std::make_unique<BinoutWriter>(c.out + "/binout", s.model().title)),
         csv_(restart_time > 0 ? std::make_unique<CsvHistoryWriter>(c.out + "/csv", restart_time)
                               : std::make_unique<CsvHistoryWriter>(c.out + "/csv")) {
     const Model& m = s.model();
     D3plotOptions options = d3plot_options(m);
     options.rigid_walls = int(m.rigid_walls.size());
     const ResultMesh mesh = result_mesh(m);
-    d3plot_ = restart_time > 0 ? std::make_unique<D3plotWriter>(c.out + "/d3plot", mesh, options, restart_time)
-                               : std::make_unique<D3plotWriter>(c.out + "/d3plot", mesh, options);
+    d3plot_ = restart_time > 0
+                  ? std::make_unique<D3plotWriter>(c.out + "/d3plot", mesh, options, restart_time)
+                  : std::make_unique<D3plotWriter>(c.out + "/d3plot", mesh, options);
     if (c.vtu)
-      vtu_ = restart_time > 0 ? std::make_unique<VtuWriter>(c.out + "/animation.pvd", mesh, VtuOptions{}, restart_time)
+      vtu_ = restart_time > 0 ? std::make_unique<VtuWriter>(c.out + "/animation.pvd", mesh,
+                                                            VtuOptions{}, restart_time)
                               : std::make_unique<VtuWriter>(c.out + "/animation.pvd", mesh);
     for (const HistoryDatabase& d : history_.databases()) {
       next_.push_back(first_after(restart_time, d.interval));
@@ -111,11 +117,13 @@ void progress(const Simulation& s, double started_at, double wall) {
   const double done = (st.time - started_at) / (s.end_time() - started_at);
   const double left = done > 0 ? wall * (1 - done) / done : 0;
   const TimeStepOwner o = s.time_step_owner();
-  fmt::print("t {:.5g} of {:.5g}  cycle {}  dt {:.4g} ({} {} part {})  energy ratio {:.5f}  hourglass {:.1f} %  "
-             "added mass {:.2f} %  left {:.0f} s\n",
-             st.time, s.end_time(), st.cycle, st.dt, o.family, o.element, o.part, st.energy.ratio(),
-             st.energy.internal != 0 ? 100 * st.energy.hourglass / st.energy.internal : 0,
-             s.physical_mass() > 0 ? 100 * s.added_mass() / s.physical_mass() : 0, left);
+  fmt::print(
+      "t {:.5g} of {:.5g}  cycle {}  dt {:.4g} ({} {} part {})  energy ratio {:.5f}  hourglass "
+      "{:.1f} %  "
+      "added mass {:.2f} %  left {:.0f} s\n",
+      st.time, s.end_time(), st.cycle, st.dt, o.family, o.element, o.part, st.energy.ratio(),
+      st.energy.internal != 0 ? 100 * st.energy.hourglass / st.energy.internal : 0,
+      s.physical_mass() > 0 ? 100 * s.added_mass() / s.physical_mass() : 0, left);
   std::fflush(stdout);
 }
 
@@ -184,23 +192,26 @@ std::vector<std::string> findings(const Simulation& s) {
     const Model& m = s.model();
     const PenetrationCheck& p = c.deepest;
     if (p.released > 0)
-      list.push_back(fmt::format("contact {}: {} times a node went so deep that it was let go", m.contacts[c.contact].id,
-                                 p.released));
+      list.push_back(fmt::format("contact {}: {} times a node went so deep that it was let go",
+                                 m.contacts[c.contact].id, p.released));
     if (p.allowed > 0 && p.depth > 0.5 * p.allowed)
-      list.push_back(fmt::format("contact {}: node {} was {:.4g} deep{} at t = {:.4g}, {:.0f} % of what it may be",
-                                 m.contacts[c.contact].id, m.nodes.id[p.node], p.depth,
-                                 p.part >= 0 ? fmt::format(" in part {}", m.parts[p.part].id) : "", p.time,
-                                 100 * p.depth / p.allowed));
+      list.push_back(fmt::format(
+          "contact {}: node {} was {:.4g} deep{} at t = {:.4g}, {:.0f} % of what it may be",
+          m.contacts[c.contact].id, m.nodes.id[p.node], p.depth,
+          p.part >= 0 ? fmt::format(" in part {}", m.parts[p.part].id) : "", p.time,
+          100 * p.depth / p.allowed));
   }
   if (e.contact < -0.01 * scale) list.push_back("sliding energy is negative by more than 1 %");
   if (s.physical_mass() > 0 && s.added_mass() > 0.01 * s.physical_mass())
-    list.push_back(fmt::format("added mass is {:.1f} % (bound 1 %)", 100 * s.added_mass() / s.physical_mass()));
+    list.push_back(fmt::format("added mass is {:.1f} % (bound 1 %)",
+                               100 * s.added_mass() / s.physical_mass()));
   return list;
 }
 
 void print_summary(const nlohmann::ordered_json& j) {
   fmt::print("summary\n");
-  for (const auto& [key, value] : j.items()) fmt::print("{}: {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
+  for (const auto& [key, value] : j.items())
+    fmt::print("{}: {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
 }
 
 }  // namespace
@@ -213,8 +224,11 @@ int run_command(const RunCommand& c) {
   print(diagnostics, Severity::warning);
   if (!model || diagnostics.has_errors()) return 1;
   if (unsupported > 0 && !c.allow_unsupported) {
-    fmt::print(stderr, "fabrica: {} unsupported keywords or fields would change the physics. `fabrica check` lists them; "
-                       "--allow-unsupported runs without them\n", unsupported);
+    fmt::print(stderr,
+               "fabrica: {} unsupported keywords or fields would change the physics. `fabrica "
+               "check` lists them; "
+               "--allow-unsupported runs without them\n",
+               unsupported);
     return 2;
   }
   std::filesystem::create_directories(c.out);
@@ -230,13 +244,15 @@ int run_command(const RunCommand& c) {
   const double started_at = simulation.state().time;
   const std::int64_t first_cycle = simulation.state().cycle;
   if (!c.quiet)
-    fmt::print("{}: {} nodes, {} elements, {} threads, ready in {:.2f} s\n", c.deck, model->nodes.size(),
-               simulation.elements(), options.threads, seconds_since(read_start));
+    fmt::print("{}: {} nodes, {} elements, {} threads, ready in {:.2f} s\n", c.deck,
+               model->nodes.size(), simulation.elements(), options.threads,
+               seconds_since(read_start));
 
   Output output(c, simulation, started_at);
   const auto start = Clock::now();
   auto last_line = start;
-  bool line_due = false;  // a line is printed from a sample, where all energies are those of one time
+  bool line_due =
+      false;  // a line is printed from a sample, where all energies are those of one time
   const Sampler sampler{[&](double t) { return line_due || output.wants(t); },
                         [&] {
                           output.sample();
@@ -259,7 +275,8 @@ int run_command(const RunCommand& c) {
   }
   if (stop_requested) simulation.stop("stopped by a signal");
   const double wall = seconds_since(start);
-  const bool sound = simulation.ending() != Ending::negative_volume && simulation.ending() != Ending::not_a_number;
+  const bool sound =
+      simulation.ending() != Ending::negative_volume && simulation.ending() != Ending::not_a_number;
   if (sound) simulation.save(c.out + "/restart");
   output.want_last();
   simulation.sample_now(sampler);

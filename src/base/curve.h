@@ -6,8 +6,8 @@
 
 namespace fabrica {
 
-// A view of n points (x ascending, n >= 1). Outside the points the curve is continued by its end segments
-// (constitutive curves) or by its end values (time curves).
+// A view of n points (x ascending, n >= 1). Outside the points the curve is continued by its end
+// segments (constitutive curves) or by its end values (time curves).
 struct CurveView {
   const Real* x = nullptr;
   const Real* y = nullptr;

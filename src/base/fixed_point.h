@@ -1,7 +1,9 @@
 #pragma once
-// Sums that do not depend on order: contributions are rounded to 64-bit integers and added with integer atomics.
+// Sums that do not depend on order: contributions are rounded to 64-bit integers and added with
+// integer atomics.
 //   F_int = llrint(F * 2^s)
-// s is chosen once from a force scale so that the range is about 4e6 times that scale and the resolution 1e-12 of it.
+// s is chosen once from a force scale so that the range is about 4e6 times that scale and the
+// resolution 1e-12 of it.
 #include <atomic>
 #include <cmath>
 #include <cstdint>
@@ -32,7 +34,8 @@ class FixedVectors {
   void add(std::size_t i, const Vec3d& f) {
     for (int k = 0; k < 3; ++k) {
       const std::int64_t q = std::llrint(f[k] * scale_.to_int);
-      if (q != 0) std::atomic_ref<std::int64_t>(data_[3 * i + k]).fetch_add(q, std::memory_order_relaxed);
+      if (q != 0)
+        std::atomic_ref<std::int64_t>(data_[3 * i + k]).fetch_add(q, std::memory_order_relaxed);
     }
   }
   Vec3d get(std::size_t i) const {
@@ -57,7 +60,9 @@ class FixedVectors {
 class FixedSum {
  public:
   explicit FixedSum(FixedScale s = {}) : scale_(s) {}
-  void add(double x) { value_.fetch_add(std::llrint(x * scale_.to_int), std::memory_order_relaxed); }
+  void add(double x) {
+    value_.fetch_add(std::llrint(x * scale_.to_int), std::memory_order_relaxed);
+  }
   double take() { return double(value_.exchange(0)) * scale_.to_real; }
 
  private:

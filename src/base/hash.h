@@ -1,6 +1,6 @@
 #pragma once
-// 64-bit hash of bytes (FNV-1a over 8-byte words, then bytes): for comparing states and files, not for security.
-// Source: Fowler, Noll, Vo; constants of the 64-bit variant.
+// 64-bit hash of bytes (FNV-1a over 8-byte words, then bytes): for comparing states and files, not
+// for security. Source: Fowler, Noll, Vo; constants of the 64-bit variant.
 #include <cstdint>
 #include <cstring>
 #include <string_view>

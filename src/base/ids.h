@@ -1,6 +1,6 @@
 #pragma once
-// User ids as they stand in a deck. A strong type per kind, so that a node id is never taken for a part id.
-// Internal indices are plain `int`, in arrays named as maps (node_to_part).
+// User ids as they stand in a deck. A strong type per kind, so that a node id is never taken for a
+// part id. Internal indices are plain `int`, in arrays named as maps (node_to_part).
 #include <compare>
 #include <cstdint>
 #include <functional>
@@ -21,5 +21,7 @@ using PartId = Id<struct PartTag>;
 
 template <class Tag>
 struct std::hash<fabrica::Id<Tag>> {
-  std::size_t operator()(fabrica::Id<Tag> id) const noexcept { return std::hash<std::int64_t>{}(id.value); }
+  std::size_t operator()(fabrica::Id<Tag> id) const noexcept {
+    return std::hash<std::int64_t>{}(id.value);
+  }
 };

@@ -1,7 +1,8 @@
 #pragma once
-// A lane is the number type `L` that every kernel is written over: float or double (one element, as on a GPU
-// thread) or Pack<Real, W> (W elements on a CPU core). This header gives the scalar lanes the same vocabulary
-// that pack.h gives to packs: select, min, max, abs, fma, sqrt, any, all, clamp.
+// A lane is the number type `L` that every kernel is written over: float or double (one element, as
+// on a GPU thread) or Pack<Real, W> (W elements on a CPU core). This header gives the scalar lanes
+// the same vocabulary that pack.h gives to packs: select, min, max, abs, fma, sqrt, any, all,
+// clamp.
 #include <cmath>
 #include <cstdint>
 

@@ -1,6 +1,7 @@
 #pragma once
-// Pack<T, W>: W numbers in one vector register, over the compiler's vector extensions. Invisible to nvcc.
-// Every operation is IEEE per lane, so the bits do not depend on W. Contraction is off: fma() is explicit.
+// Pack<T, W>: W numbers in one vector register, over the compiler's vector extensions. Invisible to
+// nvcc. Every operation is IEEE per lane, so the bits do not depend on W. Contraction is off: fma()
+// is explicit.
 #if !defined(__CUDACC__)
 #include <immintrin.h>
 

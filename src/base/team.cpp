@@ -61,7 +61,8 @@ void Team::worker(int thread) {
   unsigned seen = 0;
   for (;;) {
     // spin first: the next loop usually starts within microseconds; sleep when it does not
-    for (int spins = 0; epoch_.load(std::memory_order_acquire) == seen && spins < 20000; ++spins) relax();
+    for (int spins = 0; epoch_.load(std::memory_order_acquire) == seen && spins < 20000; ++spins)
+      relax();
     epoch_.wait(seen, std::memory_order_acquire);
     seen = epoch_.load(std::memory_order_acquire);
     if (stop_.load()) return;

@@ -1,6 +1,7 @@
 #pragma once
-// A team of threads that stays alive between loops. Work is a range of fixed chunks; which thread takes which
-// chunk never changes a result, because chunks write to their own places and sums are made in chunk order.
+// A team of threads that stays alive between loops. Work is a range of fixed chunks; which thread
+// takes which chunk never changes a result, because chunks write to their own places and sums are
+// made in chunk order.
 #include <atomic>
 #include <functional>
 #include <thread>
@@ -24,7 +25,9 @@ class Team {
       return;
     }
     struct Call {
-      static void run(void* f, int chunk, int thread) { (*static_cast<std::remove_reference_t<Fn>*>(f))(chunk, thread); }
+      static void run(void* f, int chunk, int thread) {
+        (*static_cast<std::remove_reference_t<Fn>*>(f))(chunk, thread);
+      }
     };
     start(chunks, &Call::run, const_cast<void*>(static_cast<const void*>(&fn)));
   }

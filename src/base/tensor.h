@@ -1,6 +1,6 @@
 #pragma once
-// Small vectors and tensors over a lane type. Symmetric tensors use the order xx, yy, zz, xy, yz, zx everywhere;
-// shear components are tensor components (half the engineering shear strain).
+// Small vectors and tensors over a lane type. Symmetric tensors use the order xx, yy, zz, xy, yz,
+// zx everywhere; shear components are tensor components (half the engineering shear strain).
 #include "base/lane.h"
 
 namespace fabrica {
@@ -96,7 +96,8 @@ FABRICA_FN Mat3<L> transpose(const Mat3<L>& a) {
 template <class L>
 FABRICA_FN L det(const Mat3<L>& m) {
   const auto& a = m.a;
-  return a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) - a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
+  return a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) -
+         a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
          a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
 }
 // inverse of m; the determinant must not vanish
@@ -104,12 +105,13 @@ template <class L>
 FABRICA_FN Mat3<L> inverse(const Mat3<L>& m) {
   const auto& a = m.a;
   const L i = L(1.0) / det(m);
-  return {{{i * (a[1][1] * a[2][2] - a[1][2] * a[2][1]), i * (a[0][2] * a[2][1] - a[0][1] * a[2][2]),
-            i * (a[0][1] * a[1][2] - a[0][2] * a[1][1])},
-           {i * (a[1][2] * a[2][0] - a[1][0] * a[2][2]), i * (a[0][0] * a[2][2] - a[0][2] * a[2][0]),
-            i * (a[0][2] * a[1][0] - a[0][0] * a[1][2])},
-           {i * (a[1][0] * a[2][1] - a[1][1] * a[2][0]), i * (a[0][1] * a[2][0] - a[0][0] * a[2][1]),
-            i * (a[0][0] * a[1][1] - a[0][1] * a[1][0])}}};
+  return {
+      {{i * (a[1][1] * a[2][2] - a[1][2] * a[2][1]), i * (a[0][2] * a[2][1] - a[0][1] * a[2][2]),
+        i * (a[0][1] * a[1][2] - a[0][2] * a[1][1])},
+       {i * (a[1][2] * a[2][0] - a[1][0] * a[2][2]), i * (a[0][0] * a[2][2] - a[0][2] * a[2][0]),
+        i * (a[0][2] * a[1][0] - a[0][0] * a[1][2])},
+       {i * (a[1][0] * a[2][1] - a[1][1] * a[2][0]), i * (a[0][1] * a[2][0] - a[0][0] * a[2][1]),
+        i * (a[0][0] * a[1][1] - a[0][1] * a[1][0])}}};
 }
 
 template <class L>

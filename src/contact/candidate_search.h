@@ -32,8 +32,9 @@ class PairFilter {
 PointBoxPairs find_pairs(const std::vector<Vec3d>& points, const std::vector<BoundingBox>& boxes,
                          const PairFilter& filter);
 
-// The pairs found, ascending by first, then second; one that stands in `old`, in the same order, keeps its history.
-// Pair: an aggregate that begins with the integers `first` (point) and `second` (box).
+// The pairs found, ascending by first, then second; one that stands in `old`, in the same order,
+// keeps its history. Pair: an aggregate that begins with the integers `first` (point) and `second`
+// (box).
 template <class Pair>
 std::vector<Pair> carry_over(const PointBoxPairs& found, const std::vector<Pair>& old) {
   std::vector<Pair> pairs;
@@ -42,7 +43,8 @@ std::vector<Pair> carry_over(const PointBoxPairs& found, const std::vector<Pair>
   for (int i = 0; i + 1 < int(found.first.size()); ++i)
     for (int p = found.first[i]; p < found.first[i + 1]; ++p) {
       const Pair pair{i, found.box[p]};
-      while (known != old.end() && (known->first < i || (known->first == i && known->second < pair.second)))
+      while (known != old.end() &&
+             (known->first < i || (known->first == i && known->second < pair.second)))
         ++known;
       const bool same = known != old.end() && known->first == i && known->second == pair.second;
       pairs.push_back(same ? *known : pair);

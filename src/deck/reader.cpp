@@ -245,7 +245,8 @@ class DeckReader {
     if (v[2][2] != 0) p.length = v[2][2];
     const auto id = std::int64_t(std::clamp(v[3][0], -1e15, 1e15));
     if (id != 0) {
-      // one of the including file's own ids, which are shifted where it is placed itself, or one from outside
+      // one of the including file's own ids, which are shifted where it is placed itself, or one
+      // from outside
       auto found = context_.transformations.find(id + block.placement.offset("transformation"));
       if (found == context_.transformations.end()) found = context_.transformations.find(id);
       if (found == context_.transformations.end()) {

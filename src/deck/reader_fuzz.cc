@@ -1,5 +1,5 @@
-// Fuzz target: any bytes are a deck. Reading, checking and writing it back must neither crash, hang nor leak.
-// Includes are not followed.
+// Fuzz target: any bytes are a deck. Reading, checking and writing it back must neither crash, hang
+// nor leak. Includes are not followed.
 #include <cstddef>
 #include <cstdint>
 #include <sstream>
@@ -13,7 +13,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fabrica::Diagnostics diagnostics;
   fabrica::ReadOptions options;
   options.follow_includes = false;
-  const auto model = fabrica::read_deck_text({reinterpret_cast<const char*>(data), size}, "fuzz", diagnostics, options);
+  const auto model = fabrica::read_deck_text({reinterpret_cast<const char*>(data), size}, "fuzz",
+                                             diagnostics, options);
   if (!model) return 0;
   fabrica::format_check(fabrica::check_model(*model, diagnostics), diagnostics);
   std::ostringstream out;

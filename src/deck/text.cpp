@@ -65,7 +65,8 @@ bool inflate_gzip(std::string_view packed, std::string& out) {
 }
 
 bool inflate_zstd(std::string_view packed, std::string& out) {
-  std::unique_ptr<ZSTD_DStream, std::size_t (*)(ZSTD_DStream*)> stream(ZSTD_createDStream(), ZSTD_freeDStream);
+  std::unique_ptr<ZSTD_DStream, std::size_t (*)(ZSTD_DStream*)> stream(ZSTD_createDStream(),
+                                                                       ZSTD_freeDStream);
   std::vector<char> chunk(ZSTD_DStreamOutSize());
   ZSTD_inBuffer in{packed.data(), packed.size(), 0};
   std::size_t status = 0;
@@ -100,7 +101,8 @@ std::unique_ptr<FileText> load_text(const std::filesystem::path& path, std::stri
     return nullptr;
   }
   auto mapped = std::make_unique<MappedText>(data, size);
-  const bool gzip = mapped->text.starts_with("\x1f\x8b"), zstd = mapped->text.starts_with("\x28\xb5\x2f\xfd");
+  const bool gzip = mapped->text.starts_with("\x1f\x8b"),
+             zstd = mapped->text.starts_with("\x28\xb5\x2f\xfd");
   if (!gzip && !zstd) return mapped;
   std::string plain;
   if (gzip ? !inflate_gzip(mapped->text, plain) : !inflate_zstd(mapped->text, plain)) {

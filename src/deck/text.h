@@ -14,8 +14,8 @@ class FileText {
   std::string_view text;
 };
 
-// Maps a file into memory, or inflates it when its first bytes say gzip or zstd. Null, and what went wrong in
-// `problem`, if it cannot be read.
+// Maps a file into memory, or inflates it when its first bytes say gzip or zstd. Null, and what
+// went wrong in `problem`, if it cannot be read.
 std::unique_ptr<FileText> load_text(const std::filesystem::path& path, std::string& problem);
 
 // Cuts a text into lines, counting from 1; handles LF and CRLF and a missing final newline.
@@ -29,14 +29,16 @@ class Lines {
   bool next() {
     if (rest_.empty()) return false;
     const void* const found = std::char_traits<char>::find(rest_.data(), rest_.size(), '\n');
-    const std::size_t end = found ? std::size_t(static_cast<const char*>(found) - rest_.data()) : rest_.size();
+    const std::size_t end =
+        found ? std::size_t(static_cast<const char*>(found) - rest_.data()) : rest_.size();
     line = rest_.substr(0, end);
     rest_.remove_prefix(found ? end + 1 : end);
     if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
     ++number;
     return true;
   }
-  // moves to the next data line of a block: passes over comments, stops before a keyword or an encrypted block
+  // moves to the next data line of a block: passes over comments, stops before a keyword or an
+  // encrypted block
   bool next_data() {
     while (!rest_.empty()) {
       if (rest_[0] == '*' || rest_.starts_with("-----BEGIN PGP")) return false;

@@ -18,8 +18,8 @@ template <class L>
 struct BeamFrame {
   Vec3<L> e1, e2, e3;
   L length,
-      stretch;  // current length and its increment (L^2 - L(old)^2)/(L + L(old))
-  L axial;      // strain increment (L^2 - L(old)^2)/(2 Lm^2)
+      stretch;   // current length and its increment (L^2 - L(old)^2)/(L + L(old))
+  L axial;       // strain increment (L^2 - L(old)^2)/(2 Lm^2)
   Vec3<L> d[2];  // relative rotation increments in E
 
   // axis: the old e2

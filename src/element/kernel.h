@@ -3,22 +3,26 @@
 //
 // An element is a struct of static functions, templated on the lane L and the material law M:
 //   static constexpr int corners                     nodes
-//   static constexpr bool rotations                  corners carry angular velocity and receive moments
-//   template <class M> static int state_fields(const ElementParameters&)
-//                                                    Reals of history per element; field f of lane i of a block
-//                                                    lies at block[f * block_size + i]
-//   template <class L, class M> static void initialise(const M&, const ElementParameters&, const Corners<L, N>&,
+//   static constexpr bool rotations                  corners carry angular velocity and receive
+//   moments template <class M> static int state_fields(const ElementParameters&)
+//                                                    Reals of history per element; field f of lane
+//                                                    i of a block lies at block[f * block_size + i]
+//   template <class L, class M> static void initialise(const M&, const ElementParameters&, const
+//   Corners<L, N>&,
 //                                                      const Given<L>&, StateView<L>)
-//                                                    fills the history at t = 0 (it is zero before the call)
-//   template <class L, class M> static void forces(const M&, const ElementParameters&, Real dt_previous,
-//                                                  const Corners<L, N>&, StateView<L>, CornerForces<L, N>&,
-//                                                  Totals<L>&)
-//                                                    advances stress from t(n-1) to t(n) with the velocity of the
-//                                                    half step and returns what the element does at t(n)
+//                                                    fills the history at t = 0 (it is zero before
+//                                                    the call)
+//   template <class L, class M> static void forces(const M&, const ElementParameters&, Real
+//   dt_previous,
+//                                                  const Corners<L, N>&, StateView<L>,
+//                                                  CornerForces<L, N>&, Totals<L>&)
+//                                                    advances stress from t(n-1) to t(n) with the
+//                                                    velocity of the half step and returns what the
+//                                                    element does at t(n)
 //   static void lump(const ElementParameters&, const Corners<double, N>&, const Given<double>&,
 //                    double mass[N], double inertia[N])      lumped mass and scalar rotary inertia
-// Forces are the forces ON the nodes. Kernels are pure functions of their arguments. At dt_previous = 0 (the
-// first call) the strain increment is zero and only forces and the time step are computed.
+// Forces are the forces ON the nodes. Kernels are pure functions of their arguments. At dt_previous
+// = 0 (the first call) the strain increment is zero and only forces and the time step are computed.
 #include <type_traits>
 
 #include "base/real.h"
@@ -34,8 +38,8 @@ struct ElementParameters {
   Real density = 0, bulk = 0, shear = 0, youngs = 0, poisson = 0;
   int formulation = 0;
   // hourglass control
-  int hourglass = 0;               // IHQ
-  Real hourglass_coefficient = 0;  // QM
+  int hourglass = 0;                                  // IHQ
+  Real hourglass_coefficient = 0;                     // QM
   Real hourglass_bending = 0, hourglass_warping = 0;  // QB, QW (shells)
   // bulk viscosity
   Real quadratic_viscosity = Real(1.5), linear_viscosity = Real(0.06);
@@ -54,7 +58,8 @@ struct ElementParameters {
   Real area = 0, iss = 0, itt = 0, torsion = 0, shear_area = 0;
   Real axial_damping = 0, bending_damping = 0;  // DA, DB of *MAT_ELASTIC
   int section_points = 4;
-  Real section_s[9] = {}, section_t[9] = {}, section_weight[9] = {};  // Hughes-Liu: positions [length], area weights
+  Real section_s[9] = {}, section_t[9] = {},
+       section_weight[9] = {};  // Hughes-Liu: positions [length], area weights
   // mass scaling: time step that lighter elements are brought to; 0: none
   Real mass_scaling_time_step = 0;
 };
@@ -62,8 +67,8 @@ struct ElementParameters {
 // What differs from element to element at the start.
 template <class L>
 struct Given {
-  L thickness[4];              // shells, per corner
-  Vec3<L> orientation;         // beams: a vector in the r-s plane
+  L thickness[4];       // shells, per corner
+  Vec3<L> orientation;  // beams: a vector in the r-s plane
 };
 
 // Corner data of one pack of elements, relative to the tile's anchor.
@@ -82,12 +87,12 @@ struct CornerForces {
 
 template <class L>
 struct Totals {
-  L internal = L(0.0);   // energy increments of the step
+  L internal = L(0.0);  // energy increments of the step
   L hourglass = L(0.0);
   L damping = L(0.0);
-  L time_step;           // the element's own stable step, unscaled
-  L alive = L(1.0);      // 0: the element has failed and gives no force
-  L volume = L(0.0);     // current volume; <= 0 stops the run
+  L time_step;        // the element's own stable step, unscaled
+  L alive = L(1.0);   // 0: the element has failed and gives no force
+  L volume = L(0.0);  // current volume; <= 0 stops the run
 };
 
 // History of one pack: reads and writes structs that consist of L members only.
@@ -136,7 +141,8 @@ constexpr int material_fields() {
   return fields_of<typename M::template State<Real>>();
 }
 
-// rotates the first M::rotated tensors of a material state with the increment of spin: Jaumann, midpoint
+// rotates the first M::rotated tensors of a material state with the increment of spin: Jaumann,
+// midpoint
 template <class L>
 FABRICA_FN Sym3<L> jaumann_increment(const Sym3<L>& s, const Vec3<L>& w) {
   // w: rotation increments about x, y, z (half the curl times dt)

@@ -27,8 +27,8 @@ struct MembranePoint {
                                                Point<L> point, StateView<L> s) {
     using MaterialState = typename M::template State<L>;
     const L zero = L(0.0);
-    ShellResultants<L> r{zero, zero, zero, zero, zero,   zero,
-                         zero, zero, zero, zero, L(1.0), L(1.0), L(1.0)};
+    ShellResultants<L> r{zero, zero, zero, zero,   zero,   zero,  zero,
+                         zero, zero, zero, L(1.0), L(1.0), L(1.0)};
     const L initial = point.modulus;
     Sym3<L> old{s.load(0), s.load(1), zero, s.load(2), zero, zero};
     MaterialState state = s.template get<MaterialState>(material);

@@ -133,7 +133,8 @@ struct ShellLayers {
                                                const Point<L>& start, StateView<L> s) {
     using MaterialState = typename M::template State<L>;
     const L zero = L(0.0), half_h = L(0.5) * h;
-    ShellResultants<L> r{zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, L(1.0), zero, L(1.0)};
+    ShellResultants<L> r{zero, zero, zero, zero,   zero, zero,  zero,
+                         zero, zero, zero, L(1.0), zero, L(1.0)};
     L modulus = start.modulus, kept = L(1e-30), trial = L(1e-30);
     for (int q = 0; q < p.layers; ++q, s.block += stride * block_size) {
       const L z = half_h * L(p.layer_z[q] - p.reference_location), w = L(p.layer_weight[q]);
@@ -198,12 +199,15 @@ struct ShellLayers {
   }
   // von Mises stress squared, in the plane, of the new stress and of the elastic trial stress
   template <class L>
-  FABRICA_FN static void add_squares(const ElementParameters& p, const L& w, const Sym3<L>& old, const Sym3<L>& now,
-                                     const Sym3<L>& strain, L& kept, L& trial) {
+  FABRICA_FN static void add_squares(const ElementParameters& p, const L& w, const Sym3<L>& old,
+                                     const Sym3<L>& now, const Sym3<L>& strain, L& kept, L& trial) {
     const L plane = L(p.youngs / (1 - p.poisson * p.poisson)), nu = L(p.poisson);
-    const L xx = fma(plane, fma(nu, strain.yy, strain.xx), old.xx), yy = fma(plane, fma(nu, strain.xx, strain.yy), old.yy);
+    const L xx = fma(plane, fma(nu, strain.yy, strain.xx), old.xx),
+            yy = fma(plane, fma(nu, strain.xx, strain.yy), old.yy);
     const L xy = fma(L(2 * p.shear), strain.xy, old.xy);
-    auto square = [](const L& a, const L& b, const L& c) { return fma(a, a, fma(b, b, fma(L(3.0) * c, c, -(a * b)))); };
+    auto square = [](const L& a, const L& b, const L& c) {
+      return fma(a, a, fma(b, b, fma(L(3.0) * c, c, -(a * b))));
+    };
     kept = fma(w, square(now.xx, now.yy, now.xy), kept);
     trial = fma(w, square(xx, yy, xy), trial);
   }

@@ -9,13 +9,14 @@
 // v31)/2A.
 // Hourglass: h = (1,-1,1,-1), gamma = h - (h.x) B1 - (h.y) B2, rates gamma.w, gamma.vz, gamma.v
 // with stiffnesses
-// The membrane rates are taken relative to the frame's rotation, which a warped element (h.z != 0) would feel:
+// The membrane rates are taken relative to the frame's rotation, which a warped element (h.z != 0)
+// would feel:
 //   q_x = gamma.vx + (h.z) vz,x,  q_y = gamma.vy + (h.z) vz,y
 //   C1 = QB E h^3 A BB/192,  C2 = QW k G h^3 BB/12,  C3 = QM E h A BB/8,  BB = B1.B1 + B2.B2    (3)
-// IHQ 4, 5: Q <- k (Q + C q dt), k the share of the elastic trial stress that the layers' return mapping kept: the
-// stress field that the hourglass modes stand for would flow with them, and elastic forces beside flowing stress
-// would grow without bound. IHQ 1-3 (viscous): Q = C q sqrt(A)/c.
-// Warping (Belytschko, Wong, Chiang): zg = (h.z)/4, s = 2 zg/A^2
+// IHQ 4, 5: Q <- k (Q + C q dt), k the share of the elastic trial stress that the layers' return
+// mapping kept: the stress field that the hourglass modes stand for would flow with them, and
+// elastic forces beside flowing stress would grow without bound. IHQ 1-3 (viscous): Q = C q
+// sqrt(A)/c. Warping (Belytschko, Wong, Chiang): zg = (h.z)/4, s = 2 zg/A^2
 //   kxx += s (x31 vx31 - x42 vx42),  kyy += s (y31 vy31 - y42 vy42),
 //   2kxy += s (y31 vx31 - y42 vx42 + x31 vy31 - x42 vy42)                                       (4)
 // Forces are the transposes of (2), (3) and (4).
@@ -29,7 +30,8 @@ template <ShellFrame F>
 struct ShellBTOf {
   static constexpr int corners = 4;
   static constexpr bool rotations = true;
-  // (3) in amplitudes: gamma.v is four times the amplitude of an hourglass mode, and so is its force
+  // (3) in amplitudes: gamma.v is four times the amplitude of an hourglass mode, and so is its
+  // force
   static constexpr double stiffness_share = 1.0 / 16;
   // history: thickness, hourglass forces (moments x, y; force z; forces x, y), layers
   static constexpr int thickness_field = 0, hourglass_field = 1, layers_field = 6;
@@ -183,7 +185,9 @@ struct ShellBTOf {
     }
     e.kxx *= dt, e.kyy *= dt, e.kxy *= L(0.5) * dt;
   }
-  FABRICA_FN static bool warped(const ElementParameters& p) { return p.warping || p.formulation == 10; }
+  FABRICA_FN static bool warped(const ElementParameters& p) {
+    return p.warping || p.formulation == 10;
+  }
 
   template <class L>
   struct Hourglass {
@@ -237,7 +241,8 @@ struct ShellBTOf {
   FABRICA_FN static void corner_forces(const ElementParameters& p, const Geometry<L>& g,
                                        const ShellResultants<L>& r, const Hourglass<L>& q,
                                        CornerForces<L, 4>& out) {
-    auto pair = [&](const L& nx, const L& ny, const L& Q, L& P, L& R, const L& x = L(0.0), const L& y = L(0.0)) {
+    auto pair = [&](const L& nx, const L& ny, const L& Q, L& P, L& R, const L& x = L(0.0),
+                    const L& y = L(0.0)) {
       const L a = g.half_inverse * (fma(g.area, nx, -(Q * g.hx)) + x),
               b = g.half_inverse * (fma(g.area, ny, -(Q * g.hy)) + y);
       P = fma(g.y42, a, -(g.x42 * b));

@@ -80,7 +80,9 @@ struct PiecewiseLinearPlasticity {
   FABRICA_FN static Sym3<L> no_back() {
     return {L(0.0), L(0.0), L(0.0), L(0.0), L(0.0), L(0.0)};
   }
-  FABRICA_FN bool rate_dependent() const { return rate_constant > 0 || bool(rate_curve) || bool(table); }
+  FABRICA_FN bool rate_dependent() const {
+    return rate_constant > 0 || bool(rate_curve) || bool(table);
+  }
 
   // S(ep) of equation (1)
   template <class L>

@@ -3,20 +3,22 @@
 //
 // A law is a plain struct of parameters (Real, CurveView) with
 //   static constexpr std::string_view keyword      canonical keyword, "MAT_ELASTIC"
-//   static constexpr unsigned families             where it may be used: in_solids | in_shells | in_beams
-//   static Law from(const Parameters&)             reads the card
-//   Elastic elastic() const                        density and initial elastic moduli, for mass, time step, contact
-//   template <class L> struct State                history of one point: only L and Sym3<L> members, all zero at
-//                                                  the start; the first `rotated` Sym3 members turn with the
-//                                                  material and are rotated by the element before the call
+//   static constexpr unsigned families             where it may be used: in_solids | in_shells |
+//   in_beams static Law from(const Parameters&)             reads the card Elastic elastic() const
+//   density and initial elastic moduli, for mass, time step, contact template <class L> struct
+//   State                history of one point: only L and Sym3<L> members, all zero at
+//                                                  the start; the first `rotated` Sym3 members turn
+//                                                  with the material and are rotated by the element
+//                                                  before the call
 //   static constexpr int rotated                   how many
-//   static constexpr bool total                    false: rate law, true: law of the deformation gradient
-//   static constexpr bool can_fail                 true: may set Point::alive to 0
+//   static constexpr bool total                    false: rate law, true: law of the deformation
+//   gradient static constexpr bool can_fail                 true: may set Point::alive to 0
 // and one of
-//   Sym3<L> stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point, State<L>& state) const  (rate)
+//   Sym3<L> stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point, State<L>& state)
+//   const  (rate)
 //       old: Cauchy stress at t(n-1), already rotated to t(n); strain: D dt (tensor components);
 //       returns Cauchy stress at t(n)
-//   Sym3<L> stress(const Mat3<L>& F, Point<L>& point, State<L>& state) const                           (total)
+//   Sym3<L> stress(const Mat3<L>& F, Point<L>& point, State<L>& state) const (total)
 //       F: deformation gradient, with det F = point.volume_ratio; returns Cauchy stress
 // Kernels: no data-dependent branch except select(), no allocation, no global state.
 #include <string_view>
@@ -45,7 +47,8 @@ struct Point {
   L dt;            // step over which `strain` grew
   L volume_ratio;  // J = V / V0 at t(n)
   L length;        // characteristic length of the element
-  L modulus;       // in: initial K + 4G/3; out: the tangent now, for the time step (raise it where stiffer)
+  L modulus;       // in: initial K + 4G/3; out: the tangent now, for the time step (raise it where
+                   // stiffer)
   L shear;         // in: initial G; out: tangent now, for hourglass stiffness
   L alive;         // out: set to 0 where the point has failed; 1 on entry
 };

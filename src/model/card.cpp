@@ -85,7 +85,8 @@ Location Card::where_of(std::string_view field) const {
     if (c.repeats) continue;
     for (const FieldSchema& f : c.fields)
       if (f.name == field)
-        return {where.file, line < card_lines.size() && card_lines[line] > 0 ? card_lines[line] : where.line};
+        return {where.file,
+                line < card_lines.size() && card_lines[line] > 0 ? card_lines[line] : where.line};
     ++line;
   }
   return where;

@@ -85,7 +85,8 @@ class Condition {
     skip();
     double number = 0;
     const char* const end = text_.data() + text_.size();
-    if (at_ < text_.size() && (std::isdigit(static_cast<unsigned char>(text_[at_])) || text_[at_] == '.')) {
+    if (at_ < text_.size() &&
+        (std::isdigit(static_cast<unsigned char>(text_[at_])) || text_[at_] == '.')) {
       const auto [p, e] = std::from_chars(text_.data() + at_, end, number);
       // a name may start with a digit ("2dbinr"): then letters follow
       if (e == std::errc() && (p == end || !std::isalpha(static_cast<unsigned char>(*p)))) {
@@ -98,13 +99,16 @@ class Condition {
   std::string_view name() {
     skip();
     const std::size_t start = at_;
-    while (at_ < text_.size() && (std::isalnum(static_cast<unsigned char>(text_[at_])) || text_[at_] == '_')) ++at_;
+    while (at_ < text_.size() &&
+           (std::isalnum(static_cast<unsigned char>(text_[at_])) || text_[at_] == '_'))
+      ++at_;
     if (start == at_) fail();
     return text_.substr(start, at_ - start);
   }
   double named() {
     const std::string_view word = name();
-    if (word != "option" && word != "given") return card_.has_field(word) ? card_.real(word) : (fail(), 0.0);
+    if (word != "option" && word != "given")
+      return card_.has_field(word) ? card_.real(word) : (fail(), 0.0);
     if (!take("(")) fail();
     const std::string_view argument = name();
     if (!take(")")) fail();

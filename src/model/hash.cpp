@@ -1,5 +1,7 @@
-// A hash of what a model is made of: bulk arrays with user ids, and cards. Lines, files and blanks do not count.
+// A hash of what a model is made of: bulk arrays with user ids, and cards. Lines, files and blanks
+// do not count.
 #include "base/hash.h"
+
 #include "model/model.h"
 
 namespace fabrica {
@@ -53,7 +55,8 @@ void add_mesh(Hash& hash, const Model& m) {
     hash.add(m.beams.id[i]);
     add_part(hash, m.parts, m.beams.part[i]);
     add_nodes(hash, m.nodes, m.beams.node[i]);
-    for (int k = 0; k < 3; ++k) hash.add(i < m.beams.orientation.size() ? m.beams.orientation[i][k] : 0.0);
+    for (int k = 0; k < 3; ++k)
+      hash.add(i < m.beams.orientation.size() ? m.beams.orientation[i][k] : 0.0);
   }
 }
 

@@ -1,8 +1,10 @@
 #pragma once
-// The model: everything a run needs, validated and with ids resolved to indices. Immutable once built.
+// The model: everything a run needs, validated and with ids resolved to indices. Immutable once
+// built.
 //
-// Bulk arrays (nodes, elements) and cards come from a reader or a generator through Builder; finish() resolves
-// them into the typed definitions below. Index -1 means "none" everywhere. Units are the deck's own.
+// Bulk arrays (nodes, elements) and cards come from a reader or a generator through Builder;
+// finish() resolves them into the typed definitions below. Index -1 means "none" everywhere. Units
+// are the deck's own.
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -32,22 +34,24 @@ struct Nodes {
 struct Solids {
   std::vector<std::int64_t> id;
   std::vector<int> part;
-  std::vector<std::array<int, 10>> node;  // 8 used by bricks; unused entries -1; wedges and tets keep deck order
+  std::vector<std::array<int, 10>>
+      node;  // 8 used by bricks; unused entries -1; wedges and tets keep deck order
   int size() const { return int(id.size()); }
 };
 struct Shells {
   std::vector<std::int64_t> id;
   std::vector<int> part;
-  std::vector<std::array<int, 4>> node;           // triangle: node[3] == node[2]
-  std::vector<std::array<float, 4>> thickness;    // of *ELEMENT_SHELL_THICKNESS, 0: section default; may be empty
-  std::vector<float> beta;                        // may be empty
+  std::vector<std::array<int, 4>> node;  // triangle: node[3] == node[2]
+  std::vector<std::array<float, 4>>
+      thickness;            // of *ELEMENT_SHELL_THICKNESS, 0: section default; may be empty
+  std::vector<float> beta;  // may be empty
   int size() const { return int(id.size()); }
 };
 struct Beams {
   std::vector<std::int64_t> id;
   std::vector<int> part;
-  std::vector<std::array<int, 3>> node;        // third: orientation node or -1
-  std::vector<Vec3d> orientation;              // of _ORIENTATION; may be empty
+  std::vector<std::array<int, 3>> node;  // third: orientation node or -1
+  std::vector<Vec3d> orientation;        // of _ORIENTATION; may be empty
   int size() const { return int(id.size()); }
 };
 struct Discretes {
@@ -96,12 +100,12 @@ struct Section {
   double ca = 0, offset = 0, rrcon = 0, srcon = 0, trcon = 0, scoor = 0;
   // discrete elements
   int torsional = 0;  // DRO
-  double dynamic_factor = 0, test_velocity = 0, clearance = 0, failure_deflection = 0, deflection_limit_compression = 0,
-         deflection_limit_tension = 0;
+  double dynamic_factor = 0, test_velocity = 0, clearance = 0, failure_deflection = 0,
+         deflection_limit_compression = 0, deflection_limit_tension = 0;
 };
 
 struct Hourglass {
-  int type = 0;           // IHQ; 0: default of the family
+  int type = 0;              // IHQ; 0: default of the family
   double coefficient = 0.1;  // QM
   double quadratic_viscosity = 1.5, linear_viscosity = 0.06;
   double bending = 0, warping = 0;  // QB, QW
@@ -138,12 +142,12 @@ struct Part {
   std::string title;
   int section = -1;
   int material = -1;
-  int eos = -1;             // index into Model::cards of the EOS card, or -1
+  int eos = -1;  // index into Model::cards of the EOS card, or -1
   std::optional<Hourglass> hourglass;
   std::optional<InertiaOverride> inertia;
   std::optional<PartContact> contact;
   Family family = Family::none;
-  bool rigid = false;       // MAT_RIGID, or made rigid by *DEFORMABLE_TO_RIGID from the start
+  bool rigid = false;  // MAT_RIGID, or made rigid by *DEFORMABLE_TO_RIGID from the start
   Location where;
 };
 
@@ -154,7 +158,8 @@ struct Curve {
   bool for_stress_initialisation = false;
   // value at t, constant outside (time curves)
   double at(double t) const;
-  double slope_integral(double a, double b) const;  // exact integral of y over [a, b], end values outside
+  double slope_integral(double a,
+                        double b) const;  // exact integral of y over [a, b], end values outside
   // storage for the kernels' views
   std::vector<Real> x_real, y_real;
   CurveView view(bool extrapolate = true) const {
@@ -198,7 +203,7 @@ struct Box {
 struct CoordinateSystem {
   std::int64_t id = 0;
   Vec3d origin;
-  Mat3d axes;  // rows: local x, y, z in global components, at the start
+  Mat3d axes;                           // rows: local x, y, z in global components, at the start
   std::array<int, 3> node{-1, -1, -1};  // of *DEFINE_COORDINATE_NODES
   bool moves = false;                   // FLAG = 1
 };
@@ -212,14 +217,22 @@ struct SdOrientation {
 // which entities one side of a contact holds
 struct ContactSide {
   enum class Kind { none, segments, shells, parts, part, nodes, all } kind = Kind::none;
-  int set = -1;                // index into the set list of that kind
-  std::vector<int> parts;      // resolved part indices (parts, part, all)
+  int set = -1;            // index into the set list of that kind
+  std::vector<int> parts;  // resolved part indices (parts, part, all)
   int box = -1;
 };
 enum class ContactKind {
-  automatic_single_surface, automatic_surface_to_surface, automatic_nodes_to_surface, automatic_general,
-  one_way_surface_to_surface, surface_to_surface, nodes_to_surface, tied_nodes_to_surface, tied_surface_to_surface,
-  tied_shell_edge_to_surface, force_transducer
+  automatic_single_surface,
+  automatic_surface_to_surface,
+  automatic_nodes_to_surface,
+  automatic_general,
+  one_way_surface_to_surface,
+  surface_to_surface,
+  nodes_to_surface,
+  tied_nodes_to_surface,
+  tied_surface_to_surface,
+  tied_shell_edge_to_surface,
+  force_transducer
 };
 struct Contact {
   std::int64_t id = 0;
@@ -229,7 +242,7 @@ struct Contact {
   bool constrained_offset = false;  // tied: _CONSTRAINED_OFFSET
   bool beam_offset = false;
   bool oriented = false;  // shells touch only on the side their normal points to
-  ContactSide a, b;  // tracked (slave) and reference (master)
+  ContactSide a, b;       // tracked (slave) and reference (master)
   double fs = 0, fd = 0, dc = 0, vc = 0, vdc = 0;
   double birth = 0, death = 1e28;
   double sfs = 1, sfm = 1, sst = 0, mst = 0, sfst = 1, sfmt = 1, fsf = 1, vsf = 1;
@@ -245,8 +258,8 @@ struct RigidWall {
   enum class Shape { plane, flat, prism, cylinder, sphere } shape = Shape::plane;
   std::vector<int> nodes;  // resolved: set less excluded, or all nodes
   bool all_nodes = false;
-  Vec3d tail, head;  // normal or axis from tail to head
-  Vec3d edge;        // finite plane: end of edge vector l
+  Vec3d tail, head;                   // normal or axis from tail to head
+  Vec3d edge;                         // finite plane: end of edge vector l
   double length_l = 0, length_m = 0;  // 0: infinite
   double radius = 0, length = 0;      // cylinder (0: infinite), sphere
   double friction = 0;                // 1: stick
@@ -275,10 +288,19 @@ struct NodalRigidBody {  // *CONSTRAINED_NODAL_RIGID_BODY, welds, spotwelds
   std::optional<InertiaOverride> inertia;
   // weld failure; infinite if none
   double failure_time = std::numeric_limits<double>::infinity();
-  double normal_force = 0, shear_force = 0, normal_exponent = 2, shear_exponent = 2;  // 0: no force criterion
+  double normal_force = 0, shear_force = 0, normal_exponent = 2,
+         shear_exponent = 2;  // 0: no force criterion
   enum class Kind { rigid, spotweld, generalized_spot } kind = Kind::rigid;
 };
-enum class JointKind { spherical, revolute, cylindrical, planar, translational, universal, locking };
+enum class JointKind {
+  spherical,
+  revolute,
+  cylindrical,
+  planar,
+  translational,
+  universal,
+  locking
+};
 struct Joint {
   std::int64_t id = 0;
   std::string title;
@@ -296,21 +318,21 @@ struct SinglePointConstraint {
 };
 struct PrescribedMotion {
   enum class Target { nodes, rigid_body } target = Target::nodes;
-  bool local = false;   // RIGID_LOCAL
+  bool local = false;  // RIGID_LOCAL
   std::vector<int> nodes;
   int part = -1;
-  int dof = 0;          // as in the deck
-  int kind = 0;         // VAD 0 velocity, 1 acceleration, 2 displacement
+  int dof = 0;   // as in the deck
+  int kind = 0;  // VAD 0 velocity, 1 acceleration, 2 displacement
   int curve = -1;
   double scale = 1, birth = 0, death = 1e28;
-  Vec3d direction{};    // of VID for dof 4, 8
+  Vec3d direction{};  // of VID for dof 4, 8
   Location where;
 };
 struct InitialVelocity {  // applied in order; later ones override
   std::vector<int> nodes;
-  std::vector<int> parts;     // rigid parts among the targets (GENERATION, RIGID_BODY)
+  std::vector<int> parts;  // rigid parts among the targets (GENERATION, RIGID_BODY)
   Vec3d velocity{}, angular_velocity{};
-  bool about_axis = false;    // GENERATION: v = velocity + omega x (x - point)
+  bool about_axis = false;  // GENERATION: v = velocity + omega x (x - point)
   Vec3d point{};
   bool rigid_bodies_only = false;
   bool override_inertia = false;  // IRIGID
@@ -367,20 +389,20 @@ struct Controls {
   bool selective_mass_scaling = false;  // IMSCL
   int time_step_curve = -1;             // LCTM
   bool erode = false;
-  Hourglass hourglass;                  // *CONTROL_HOURGLASS and *CONTROL_BULK_VISCOSITY; type 0: family default
-  int shell_update = 0;                 // ISTUPD
-  int shell_warping = 2;                // BWC
-  int shell_projection = 0;             // PROJ
+  Hourglass hourglass;    // *CONTROL_HOURGLASS and *CONTROL_BULK_VISCOSITY; type 0: family default
+  int shell_update = 0;   // ISTUPD
+  int shell_warping = 2;  // BWC
+  int shell_projection = 0;  // PROJ
   int shell_theory = 2;
-  double contact_scale = 0.1;           // SLSFAC
-  double rigid_wall_penalty = 0;        // RWPNAL
+  double contact_scale = 0.1;     // SLSFAC
+  double rigid_wall_penalty = 0;  // RWPNAL
   int contact_ignore = 0;
-  int contact_orientation = 1;          // ORIEN
+  int contact_orientation = 1;  // ORIEN
   int penalty_option = 1;
-  int shell_thickness_option = 0;       // SHLTHK
-  bool tied_projection = true;          // TIEDPRJ = 0
-  int node_numbering = 1;               // INN
-  int objective_update = 0;             // OSU
+  int shell_thickness_option = 0;  // SHLTHK
+  bool tied_projection = true;     // TIEDPRJ = 0
+  int node_numbering = 1;          // INN
+  int objective_update = 0;        // OSU
 };
 
 struct OutputRequests {
@@ -388,7 +410,7 @@ struct OutputRequests {
   std::unordered_map<std::string, double> interval;
   std::unordered_map<std::string, int> interval_curve;
   std::vector<int> nodes, solids, shells, beams, discretes;  // DATABASE_HISTORY_*
-  std::vector<std::string> node_names;                       // same length as nodes; may hold empty strings
+  std::vector<std::string> node_names;  // same length as nodes; may hold empty strings
   bool write_strains = false;
   int shell_layers = 3;  // MAXINT
 };
@@ -451,30 +473,35 @@ class Model {
   std::unordered_map<std::int64_t, int> node_map_, part_map_, curve_map_, table_map_;
 };
 
-// Collects nodes, elements and cards; finish() turns user ids into indices and cards into definitions.
+// Collects nodes, elements and cards; finish() turns user ids into indices and cards into
+// definitions.
 class Builder {
  public:
   // where the source of diagnostics is named
-  explicit Builder(Diagnostics& diagnostics) : diagnostics_(diagnostics), model_(std::make_unique<Model>()) {}
+  explicit Builder(Diagnostics& diagnostics)
+      : diagnostics_(diagnostics), model_(std::make_unique<Model>()) {}
 
   // Before finish() the element arrays hold user ids, in int64 staging:
   void reserve_nodes(std::size_t n);
   void add_node(std::int64_t id, Vec3d x, int tc = 0, int rc = 0, Location where = {});
-  void add_solid(std::int64_t id, std::int64_t part, const std::int64_t* nodes, int count, Location where = {});
+  void add_solid(std::int64_t id, std::int64_t part, const std::int64_t* nodes, int count,
+                 Location where = {});
   void add_shell(std::int64_t id, std::int64_t part, const std::int64_t* nodes, int count,
                  const double* thickness = nullptr, double beta = 0, Location where = {});
-  void add_beam(std::int64_t id, std::int64_t part, std::int64_t n1, std::int64_t n2, std::int64_t n3,
-                const Vec3d* orientation = nullptr, Location where = {});
-  void add_discrete(std::int64_t id, std::int64_t part, std::int64_t n1, std::int64_t n2, std::int64_t orientation,
-                    double scale, double offset, Location where = {});
-  void add_mass(std::int64_t id, std::int64_t node, double mass, std::int64_t part, Location where = {});
-  void add_inertia(std::int64_t id, std::int64_t node, double mass, const std::array<double, 6>& inertia,
-                   Location where = {});
+  void add_beam(std::int64_t id, std::int64_t part, std::int64_t n1, std::int64_t n2,
+                std::int64_t n3, const Vec3d* orientation = nullptr, Location where = {});
+  void add_discrete(std::int64_t id, std::int64_t part, std::int64_t n1, std::int64_t n2,
+                    std::int64_t orientation, double scale, double offset, Location where = {});
+  void add_mass(std::int64_t id, std::int64_t node, double mass, std::int64_t part,
+                Location where = {});
+  void add_inertia(std::int64_t id, std::int64_t node, double mass,
+                   const std::array<double, 6>& inertia, Location where = {});
   Card& add_card(Card card);
   Card& add_card(std::string_view keyword) { return add_card(Card(keyword)); }
   void set_title(std::string title);
 
-  // Resolves and validates. Problems go to the diagnostics; the model is usable only if none is an error.
+  // Resolves and validates. Problems go to the diagnostics; the model is usable only if none is an
+  // error.
   std::unique_ptr<Model> finish();
 
  private:
@@ -486,8 +513,10 @@ class Builder {
     std::vector<std::array<std::int64_t, 4>> shell_nodes;
     std::vector<std::array<std::int64_t, 3>> beam_nodes;
     std::vector<std::array<std::int64_t, 3>> discrete_nodes;  // n1, n2, orientation id
-    std::vector<std::int64_t> solid_part, shell_part, beam_part, discrete_part, mass_node, mass_part, inertia_node;
-    std::vector<Location> node_where, solid_where, shell_where, beam_where, discrete_where, mass_where, inertia_where;
+    std::vector<std::int64_t> solid_part, shell_part, beam_part, discrete_part, mass_node,
+        mass_part, inertia_node;
+    std::vector<Location> node_where, solid_where, shell_where, beam_where, discrete_where,
+        mass_where, inertia_where;
   } staging_;
 };
 

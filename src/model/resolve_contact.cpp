@@ -122,7 +122,8 @@ void Resolver::read_contact(const Card& card) {
                                   [&](const KindOfContact& k) { return k.stem == name; });
   if (known == std::end(contact_kinds)) return;
   c.kind = known->kind;
-  c.oriented = !name.starts_with("AUTOMATIC") && !name.starts_with("TIED") && !name.starts_with("FORCE");
+  c.oriented =
+      !name.starts_with("AUTOMATIC") && !name.starts_with("TIED") && !name.starts_with("FORCE");
   c.where = card.where;
   c.title = card.title;
   c.id = card.has_field("cid") ? card.id("cid") : 0;

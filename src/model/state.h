@@ -11,11 +11,12 @@
 
 namespace fabrica {
 
-// One cache line per node. A tile turns it into a 32-byte float record with one subtract and one conversion.
+// One cache line per node. A tile turns it into a 32-byte float record with one subtract and one
+// conversion.
 struct alignas(64) NodeMotion {
-  Vec3d x;              // position at t(n)
-  Vec3d v;              // velocity at t(n-1/2)
-  double mass;          // with added mass; never zero
+  Vec3d x;      // position at t(n)
+  Vec3d v;      // velocity at t(n-1/2)
+  double mass;  // with added mass; never zero
   double inverse_mass;
 };
 static_assert(sizeof(NodeMotion) == 64);
@@ -38,19 +39,19 @@ enum class NodeOwner : std::uint8_t {
 // All energies accumulate over the run, in double.
 struct Energies {
   double kinetic = 0, internal = 0, hourglass = 0;
-  double contact = 0;        // sliding interface energy
+  double contact = 0;  // sliding interface energy
   double contact_friction = 0;
-  double rigid_wall = 0;     // stonewall energy
-  double damping = 0;        // system damping
-  double discrete = 0;       // springs and dampers
+  double rigid_wall = 0;  // stonewall energy
+  double damping = 0;     // system damping
+  double discrete = 0;    // springs and dampers
   double joint = 0;
   double external_work = 0;
   double eroded_kinetic = 0, eroded_internal = 0, eroded_hourglass = 0;
-  double added_mass = 0;     // kinetic energy brought in by mass added to moving nodes
-  double initial = 0;        // total at the start
+  double added_mass = 0;  // kinetic energy brought in by mass added to moving nodes
+  double initial = 0;     // total at the start
   double total() const {
-    return kinetic + internal + hourglass + contact + rigid_wall + damping + discrete + joint + eroded_kinetic +
-           eroded_internal + eroded_hourglass;
+    return kinetic + internal + hourglass + contact + rigid_wall + damping + discrete + joint +
+           eroded_kinetic + eroded_internal + eroded_hourglass;
   }
   // total / (initial + external work); 1 when nothing is lost
   double ratio() const {
@@ -61,17 +62,18 @@ struct Energies {
 
 struct State {
   double time = 0;
-  KahanSum time_sum;       // what `time` is the value of
+  KahanSum time_sum;  // what `time` is the value of
   std::int64_t cycle = 0;
   double dt = 0;           // step from t(n) to t(n+1)
   double dt_previous = 0;  // step from t(n-1) to t(n)
   AlignedVector<NodeMotion> nodes;
-  AlignedVector<NodeSpin> spins;   // empty if no element has rotations; else one per node
-  std::vector<Vec3d> force;        // sum at t(n), after assembly
-  std::vector<Vec3d> moment;       // same size as spins
+  AlignedVector<NodeSpin> spins;  // empty if no element has rotations; else one per node
+  std::vector<Vec3d> force;       // sum at t(n), after assembly
+  std::vector<Vec3d> moment;      // same size as spins
   std::vector<NodeOwner> owner;
-  FixedVectors interaction;         // forces of contacts, joints, springs, loads: added by any thread, taken by assembly
-  FixedVectors interaction_moment;  // same size as spins
+  FixedVectors interaction;  // forces of contacts, joints, springs, loads: added by any thread,
+                             // taken by assembly
+  FixedVectors interaction_moment;    // same size as spins
   std::vector<double> physical_mass;  // without added mass: what gravity acts on
   Energies energy;
   double mean_dt() const { return 0.5 * (dt + dt_previous); }

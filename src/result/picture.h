@@ -26,11 +26,12 @@ struct PictureOptions {
   std::string view = "iso";
   double zoom = 1;
   int width = 1200, height = 800;
-  std::optional<bool> edges;             // element edges; default: for up to 20000 faces
+  std::optional<bool> edges;  // element edges; default: for up to 20000 faces
   // where faces meet at less than this they are shaded as one smooth surface [deg], and no outline
   // is drawn
   double feature_angle = 35;
-  // colours of the parts in the order of their ids, again from the first after the last; empty: distinct ones
+  // colours of the parts in the order of their ids, again from the first after the last; empty:
+  // distinct ones
   std::vector<std::array<unsigned char, 3>> palette;
   std::vector<std::int64_t> only, hide;  // user ids of parts; `only` empty: all
   std::optional<std::string> title;      // default: title of the result

@@ -31,7 +31,8 @@ void fill_shells(const Simulation& s, AnimationState& a) {
   const Model& m = s.model();
   const int n = m.shells.size();
   a.shell_layers = 3;
-  a.shell_stress.assign(18 * n, 0), a.shell_plastic_strain.assign(3 * n, 0), a.shell_resultants.assign(8 * n, 0);
+  a.shell_stress.assign(18 * n, 0), a.shell_plastic_strain.assign(3 * n, 0),
+      a.shell_resultants.assign(8 * n, 0);
   a.shell_thickness.assign(n, 0), a.shell_energy_density.assign(n, 0), a.shell_alive.assign(n, 1);
   for (int e = 0; e < n; ++e) {
     const ElementReadout r = s.tiles().read(m, s.state(), Family::shell, e);
@@ -89,10 +90,12 @@ AnimationState animation_state(const Simulation& s) {
   }
   for (int i = 0; i < s.discrete_elements().beams(); ++i) {
     const auto& r = s.discrete_elements().beam_resultants(i);
-    for (int k = 0; k < 6; ++k) a.beam_resultants[6 * s.discrete_elements().beam_index(i) + k] = float(r[k]);
+    for (int k = 0; k < 6; ++k)
+      a.beam_resultants[6 * s.discrete_elements().beam_index(i) + k] = float(r[k]);
   }
   a.discrete_force.resize(m.discretes.size());
-  for (int e = 0; e < m.discretes.size(); ++e) a.discrete_force[e] = float(s.discrete_elements().force(e));
+  for (int e = 0; e < m.discretes.size(); ++e)
+    a.discrete_force[e] = float(s.discrete_elements().force(e));
   for (const RigidWall& w : m.rigid_walls) {
     const Vec3d f = s.rigid_walls().force(int(&w - m.rigid_walls.data()));
     a.wall_force.push_back(norm(f));

@@ -141,7 +141,8 @@ void DiscreteElements::check_spring(const Model& model, const State& state, int 
   const Vec3d line = s.node2 < 0 ? Vec3d{0, 0, 0} : state.nodes[std::size_t(s.node2)].x - s.ground;
   const auto turns = [&](int node) {
     return node >= 0 && !state.spins.empty() &&
-           (state.spins[std::size_t(node)].inertia > 0 || state.owner[std::size_t(node)] == NodeOwner::rigid);
+           (state.spins[std::size_t(node)].inertia > 0 ||
+            state.owner[std::size_t(node)] == NodeOwner::rigid);
   };
   if (s.torsional && !turns(s.node1) && !turns(s.node2))
     diagnostics.error("spring-without-rotations", where, "ELEMENT_DISCRETE", "dro",

@@ -34,7 +34,8 @@ void gauss(int n, Real* z, Real* w) {
 // Lobatto points: the surfaces are among them
 void lobatto(int n, Real* z, Real* w) {
   static const double x3[] = {-1, 0, 1}, w3[] = {1. / 6, 4. / 6, 1. / 6};
-  static const double x4[] = {-1, -0.4472135954999579, 0.4472135954999579, 1}, w4[] = {1. / 12, 5. / 12, 5. / 12, 1. / 12};
+  static const double x4[] = {-1, -0.4472135954999579, 0.4472135954999579, 1},
+                      w4[] = {1. / 12, 5. / 12, 5. / 12, 1. / 12};
   static const double x5[] = {-1, -0.6546536707079771, 0, 0.6546536707079771, 1},
                       w5[] = {1. / 20, 49. / 180, 32. / 90, 49. / 180, 1. / 20};
   const double *x = n == 3 ? x3 : n == 4 ? x4 : x5, *v = n == 3 ? w3 : n == 4 ? w4 : w5;
@@ -54,10 +55,12 @@ void hughes_liu_section(const Section& s, ElementParameters& p) {
   const double pi = 3.14159265358979323846;
   if (s.cross_section == 1) {  // tube: 2x4 points on the mid radius
     const double outer = 0.5 * std::max(s.ts1, s.tt1 > 0 ? 0 : 0.0), inner = 0.5 * s.tt1;
-    const double area = pi * (outer * outer - inner * inner), r = std::sqrt(0.5 * (outer * outer + inner * inner));
+    const double area = pi * (outer * outer - inner * inner),
+                 r = std::sqrt(0.5 * (outer * outer + inner * inner));
     p.section_points = 8;
     for (int i = 0; i < 8; ++i) {
-      p.section_s[i] = Real(r * std::cos(pi / 4 * (i + 0.5))), p.section_t[i] = Real(r * std::sin(pi / 4 * (i + 0.5)));
+      p.section_s[i] = Real(r * std::cos(pi / 4 * (i + 0.5))),
+      p.section_t[i] = Real(r * std::sin(pi / 4 * (i + 0.5)));
       p.section_weight[i] = Real(area / 8);
     }
     p.area = Real(area);
@@ -66,7 +69,8 @@ void hughes_liu_section(const Section& s, ElementParameters& p) {
     const double g = 0.5 / std::sqrt(3.0), area = s.ts1 * s.tt1;
     p.section_points = 4;
     for (int i = 0; i < 4; ++i) {
-      p.section_s[i] = Real((i % 2 ? g : -g) * s.ts1), p.section_t[i] = Real((i / 2 ? g : -g) * s.tt1);
+      p.section_s[i] = Real((i % 2 ? g : -g) * s.ts1),
+      p.section_t[i] = Real((i / 2 ? g : -g) * s.tt1);
       p.section_weight[i] = Real(area / 4);
     }
     p.area = Real(area);
@@ -93,12 +97,14 @@ int solid_shape(const std::array<int, 10>& deck, std::array<int, 8>& nodes) {
   std::array<int, 8> n;
   std::copy_n(deck.begin(), 8, n.begin());
   nodes = n;
-  if (n[4] < 0 || (n[3] == n[4] && n[4] == n[5] && n[5] == n[6] && n[6] == n[7])) return 4;  // (a b c d d d d d)
+  if (n[4] < 0 || (n[3] == n[4] && n[4] == n[5] && n[5] == n[6] && n[6] == n[7]))
+    return 4;                                                          // (a b c d d d d d)
   if (n[2] == n[3] && n[4] == n[5] && n[5] == n[6] && n[6] == n[7]) {  // (a b c c d d d d)
     nodes = {n[0], n[1], n[2], n[4], -1, -1, -1, -1};
     return 4;
   }
-  if (n[4] == n[5] && n[6] == n[7]) {  // wedge (a b c d e e f f): triangles (a e b) and (d f c), normals inwards
+  if (n[4] == n[5] &&
+      n[6] == n[7]) {  // wedge (a b c d e e f f): triangles (a e b) and (d f c), normals inwards
     nodes = {n[0], n[4], n[1], n[3], n[6], n[2], -1, -1};
     return 6;
   }
@@ -137,7 +143,8 @@ ElementKind element_kind(const Model& model, const Part& part, Family family, in
     if (form == 9) return ElementKind::membrane_full;
     if (corners == 3) return ElementKind::shell_triangle;
     if (form == 16 || form == -16) return ElementKind::shell_full;
-    if (form == 1 || form == 2 || form == 10 || form == 0 || form == 4 || form == 3 || form == 17) return ElementKind::shell_bt;
+    if (form == 1 || form == 2 || form == 10 || form == 0 || form == 4 || form == 3 || form == 17)
+      return ElementKind::shell_bt;
   } else if (family == Family::beam) {
     if (form == 3) return ElementKind::truss;
     if (form == 2) return ElementKind::beam_resultant;
@@ -158,9 +165,11 @@ ElementParameters element_parameters(const Model& model, const Part& part, const
   if (p.hourglass == 7 || p.hourglass == 9 || p.hourglass == 10) p.hourglass = 6;
   p.hourglass_coefficient = Real(h.coefficient);
   p.hourglass_bending = Real(h.bending), p.hourglass_warping = Real(h.warping);
-  p.quadratic_viscosity = Real(h.quadratic_viscosity), p.linear_viscosity = Real(h.linear_viscosity);
+  p.quadratic_viscosity = Real(h.quadratic_viscosity),
+  p.linear_viscosity = Real(h.linear_viscosity);
   for (const PartDamping& d : model.part_damping)
-    if (d.stiffness != 0 && std::find(d.parts.begin(), d.parts.end(), int(&part - model.parts.data())) != d.parts.end())
+    if (d.stiffness != 0 &&
+        std::find(d.parts.begin(), d.parts.end(), int(&part - model.parts.data())) != d.parts.end())
       p.stiffness_damping = Real(d.stiffness);
   p.shear_factor = Real(s.shear_factor), p.reference_location = Real(s.reference_location);
   p.area_mass = Real(s.area_mass);
@@ -184,13 +193,16 @@ void add_rigid_solids(const Model& model, std::vector<double>& mass) {
     Vec3<double> x[8];
     if (corners == 4) {
       const Vec3d a = model.nodes.x[n[0]];
-      const double v = dot(model.nodes.x[n[1]] - a, cross(model.nodes.x[n[2]] - a, model.nodes.x[n[3]] - a)) / 6;
-      for (int i = 0; i < 4; ++i) mass[n[i]] += std::abs(v) * model.materials[part.material].density / 4;
+      const double v =
+          dot(model.nodes.x[n[1]] - a, cross(model.nodes.x[n[2]] - a, model.nodes.x[n[3]] - a)) / 6;
+      for (int i = 0; i < 4; ++i)
+        mass[n[i]] += std::abs(v) * model.materials[part.material].density / 4;
       continue;
     }
     const auto& deck = model.solids.node[e];
     for (int i = 0; i < 8; ++i) x[i] = model.nodes.x[deck[i]];
-    const double m = std::abs(hex_gradient<true>(x).volume) * model.materials[part.material].density / 8;
+    const double m =
+        std::abs(hex_gradient<true>(x).volume) * model.materials[part.material].density / 8;
     for (int i = 0; i < 8; ++i) mass[deck[i]] += m;
   }
 }
@@ -206,8 +218,9 @@ void add_plain_shells(const Model& model, std::vector<double>& mass, std::vector
     const int corners = n[3] == n[2] || n[3] < 0 ? 3 : 4;
     const Vec3d d1 = model.nodes.x[n[2]] - model.nodes.x[n[0]];
     const Vec3d d2 = model.nodes.x[n[corners - 1]] - model.nodes.x[n[1]];
-    const double area = corners == 4 ? 0.5 * norm(cross(d1, d2))
-                                     : 0.5 * norm(cross(d1, model.nodes.x[n[1]] - model.nodes.x[n[0]]));
+    const double area = corners == 4
+                            ? 0.5 * norm(cross(d1, d2))
+                            : 0.5 * norm(cross(d1, model.nodes.x[n[1]] - model.nodes.x[n[0]]));
     const auto h = shell_thickness(model, e);
     const double thickness = std::accumulate(h.begin(), h.begin() + corners, 0.0) / corners;
     const double m = material.density * thickness * area / corners;
@@ -220,7 +233,8 @@ void add_plain_shells(const Model& model, std::vector<double>& mass, std::vector
 
 }  // namespace
 
-void add_rigid_part_mass(const Model& model, std::vector<double>& mass, std::vector<double>& inertia) {
+void add_rigid_part_mass(const Model& model, std::vector<double>& mass,
+                         std::vector<double>& inertia) {
   add_rigid_solids(model, mass);
   add_plain_shells(model, mass, inertia);
   for (int e = 0; e < model.beams.size(); ++e) {
@@ -230,7 +244,8 @@ void add_rigid_part_mass(const Model& model, std::vector<double>& mass, std::vec
     const auto& n = model.beams.node[e];
     const double density = model.materials[part.material].density;
     if (s.formulation == 6) {  // discrete beam: mass from its volume, half to each end
-      for (int i = 0; i < 2; ++i) mass[n[i]] += 0.5 * density * s.volume, inertia[n[i]] += 0.5 * s.rotary_inertia;
+      for (int i = 0; i < 2; ++i)
+        mass[n[i]] += 0.5 * density * s.volume, inertia[n[i]] += 0.5 * s.rotary_inertia;
     } else if (part.rigid) {
       const double area = s.area != 0 ? s.area : s.ts1 * s.tt1;
       const double m = 0.5 * density * area * norm(model.nodes.x[n[1]] - model.nodes.x[n[0]]);

@@ -54,7 +54,8 @@ HistorySample History::sample(int database) const {
   out.cycle = int(simulation_.state().cycle);
   const HistoryDatabase& d = databases_[database];
   out.values.resize(d.variables.size());
-  for (std::size_t v = 0; v < d.variables.size(); ++v) out.values[v].assign(d.variables[v].length, 0);
+  for (std::size_t v = 0; v < d.variables.size(); ++v)
+    out.values[v].assign(d.variables[v].length, 0);
   fills_[database](out.values);
   return out;
 }
@@ -76,11 +77,28 @@ void History::add_glstat() {
   d->text_metadata.push_back({"element_types", "solid,beam,shell,discrete"});
   for (const char* n : {"ts_eltype", "ts_element", "ts_part"}) d->variables.push_back({n, 1, true});
   declare(*d, 1,
-          {"time_step", "kinetic_energy", "internal_energy", "stonewall_energy", "spring_and_damper_energy",
-           "joint_internal_energy", "hourglass_energy", "system_damping_energy", "sliding_interface_energy",
-           "external_work", "eroded_kinetic_energy", "eroded_internal_energy", "eroded_hourglass_energy",
-           "total_energy", "energy_ratio", "energy_ratio_wo_eroded", "global_x_velocity", "global_y_velocity",
-           "global_z_velocity", "resultant_global_velocity", "added_mass", "percent_increase"});
+          {"time_step",
+           "kinetic_energy",
+           "internal_energy",
+           "stonewall_energy",
+           "spring_and_damper_energy",
+           "joint_internal_energy",
+           "hourglass_energy",
+           "system_damping_energy",
+           "sliding_interface_energy",
+           "external_work",
+           "eroded_kinetic_energy",
+           "eroded_internal_energy",
+           "eroded_hourglass_energy",
+           "total_energy",
+           "energy_ratio",
+           "energy_ratio_wo_eroded",
+           "global_x_velocity",
+           "global_y_velocity",
+           "global_z_velocity",
+           "resultant_global_velocity",
+           "added_mass",
+           "percent_increase"});
   fills_.push_back([this](std::vector<std::vector<double>>& v) {
     const State& state = simulation_.state();
     const Energies& e = state.energy;
@@ -94,12 +112,36 @@ void History::add_glstat() {
     const Vec3d mean = mass > 0 ? (1 / mass) * momentum : Vec3d{0, 0, 0};
     const double eroded = e.eroded_kinetic + e.eroded_internal + e.eroded_hourglass;
     const double in = e.initial + e.external_work + e.added_mass;
-    const double values[] = {
-        o.family == "solid" ? 1.0 : o.family == "beam" ? 2.0 : o.family == "shell" ? 3.0 : 4.0, double(o.element),
-        double(o.part), state.dt, e.kinetic, e.internal, e.rigid_wall, e.discrete, e.joint, e.hourglass, e.damping,
-        e.contact, e.external_work, e.eroded_kinetic, e.eroded_internal, e.eroded_hourglass, e.total(), e.ratio(),
-        in != 0 ? (e.total() - eroded) / in : 1.0, mean.x, mean.y, mean.z, norm(mean), simulation_.added_mass(),
-        simulation_.physical_mass() > 0 ? 100 * simulation_.added_mass() / simulation_.physical_mass() : 0};
+    const double values[] = {o.family == "solid"   ? 1.0
+                             : o.family == "beam"  ? 2.0
+                             : o.family == "shell" ? 3.0
+                                                   : 4.0,
+                             double(o.element),
+                             double(o.part),
+                             state.dt,
+                             e.kinetic,
+                             e.internal,
+                             e.rigid_wall,
+                             e.discrete,
+                             e.joint,
+                             e.hourglass,
+                             e.damping,
+                             e.contact,
+                             e.external_work,
+                             e.eroded_kinetic,
+                             e.eroded_internal,
+                             e.eroded_hourglass,
+                             e.total(),
+                             e.ratio(),
+                             in != 0 ? (e.total() - eroded) / in : 1.0,
+                             mean.x,
+                             mean.y,
+                             mean.z,
+                             norm(mean),
+                             simulation_.added_mass(),
+                             simulation_.physical_mass() > 0
+                                 ? 100 * simulation_.added_mass() / simulation_.physical_mass()
+                                 : 0};
     for (std::size_t i = 0; i < v.size(); ++i) v[i][0] = values[i];
   });
 }
@@ -110,15 +152,16 @@ void History::add_matsum() {
   const Model& m = simulation_.model();
   for (const Part& p : m.parts) d->ids.push_back(p.id), d->legend.push_back(p.title);
   declare(*d, int(m.parts.size()),
-          {"internal_energy", "kinetic_energy", "x_momentum", "y_momentum", "z_momentum", "x_rbvelocity", "y_rbvelocity",
-           "z_rbvelocity", "hourglass_energy", "mass"});
+          {"internal_energy", "kinetic_energy", "x_momentum", "y_momentum", "z_momentum",
+           "x_rbvelocity", "y_rbvelocity", "z_rbvelocity", "hourglass_energy", "mass"});
   fills_.push_back([this](std::vector<std::vector<double>>& v) {
     const PartSums p = part_sums(simulation_);
     v[0] = simulation_.part_internal();
     v[1] = p.kinetic;
     for (int k = 0; k < 3; ++k) {
       v[2 + k] = p.momentum[k];
-      for (std::size_t i = 0; i < p.mass.size(); ++i) v[5 + k][i] = p.mass[i] > 0 ? p.momentum[k][i] / p.mass[i] : 0;
+      for (std::size_t i = 0; i < p.mass.size(); ++i)
+        v[5 + k][i] = p.mass[i] > 0 ? p.momentum[k][i] / p.mass[i] : 0;
     }
     v[8] = simulation_.part_hourglass();
     v[9] = p.mass;
@@ -136,15 +179,16 @@ void History::add_nodout() {
     d->legend.push_back(i < m.output.node_names.size() ? m.output.node_names[i] : "");
   }
   declare(*d, int(nodes.size()),
-          {"x_displacement", "y_displacement", "z_displacement", "x_velocity", "y_velocity", "z_velocity",
-           "x_acceleration", "y_acceleration", "z_acceleration", "x_coordinate", "y_coordinate", "z_coordinate",
-           "rx_velocity", "ry_velocity", "rz_velocity"});
+          {"x_displacement", "y_displacement", "z_displacement", "x_velocity", "y_velocity",
+           "z_velocity", "x_acceleration", "y_acceleration", "z_acceleration", "x_coordinate",
+           "y_coordinate", "z_coordinate", "rx_velocity", "ry_velocity", "rz_velocity"});
   fills_.push_back([this](std::vector<std::vector<double>>& v) {
     const Model& m = simulation_.model();
     const State& state = simulation_.state();
     for (std::size_t i = 0; i < m.output.nodes.size(); ++i) {
       const int n = m.output.nodes[i];
-      const Vec3d x = state.nodes[n].x, u = x - m.nodes.x[n], w = simulation_.velocity(n), a = simulation_.acceleration(n);
+      const Vec3d x = state.nodes[n].x, u = x - m.nodes.x[n], w = simulation_.velocity(n),
+                  a = simulation_.acceleration(n);
       for (int k = 0; k < 3; ++k) {
         v[k][i] = u[k], v[3 + k][i] = w[k], v[6 + k][i] = a[k], v[9 + k][i] = x[k];
         v[12 + k][i] = state.spins.empty() ? 0 : state.spins[n].w[k];
@@ -202,7 +246,8 @@ void History::add_elout() {
   if (!m.output.beams.empty())
     if (HistoryDatabase* d = add("elout/beam", "elout")) {
       for (int e : m.output.beams) d->ids.push_back(m.beams.id[e]);
-      declare(*d, int(d->ids.size()), {"axial", "shear_s", "shear_t", "moment_s", "moment_t", "torsion"});
+      declare(*d, int(d->ids.size()),
+              {"axial", "shear_s", "shear_t", "moment_s", "moment_t", "torsion"});
       fills_.push_back([&m, &tiles, &state](std::vector<std::vector<double>>& v) {
         for (std::size_t i = 0; i < m.output.beams.size(); ++i) {
           const ElementReadout r = tiles.read(m, state, Family::beam, m.output.beams[i]);
@@ -225,10 +270,11 @@ void History::add_rbdout() {
   for (int b : order) d->ids.push_back(bodies[b].id), nodal += bodies[b].part < 0;
   d->integer_metadata.push_back({"num_nodal", {nodal}});
   declare(*d, int(order.size()),
-          {"global_x", "global_y", "global_z", "global_dx", "global_dy", "global_dz", "global_rdx", "global_rdy",
-           "global_rdz", "global_vx", "global_vy", "global_vz", "global_rvx", "global_rvy", "global_rvz", "global_ax",
-           "global_ay", "global_az", "global_rax", "global_ray", "global_raz", "dircos_11", "dircos_12", "dircos_13",
-           "dircos_21", "dircos_22", "dircos_23", "dircos_31", "dircos_32", "dircos_33"});
+          {"global_x",   "global_y",   "global_z",   "global_dx", "global_dy", "global_dz",
+           "global_rdx", "global_rdy", "global_rdz", "global_vx", "global_vy", "global_vz",
+           "global_rvx", "global_rvy", "global_rvz", "global_ax", "global_ay", "global_az",
+           "global_rax", "global_ray", "global_raz", "dircos_11", "dircos_12", "dircos_13",
+           "dircos_21",  "dircos_22",  "dircos_23",  "dircos_31", "dircos_32", "dircos_33"});
   fills_.push_back([&bodies, order](std::vector<std::vector<double>>& v) {
     for (std::size_t i = 0; i < order.size(); ++i) {
       const RigidBody& b = bodies[order[i]];
@@ -256,7 +302,8 @@ void History::add_deforc() {
     torsional.push_back(elements.torsional(e) ? 1 : 0);
   }
   d->integer_metadata.push_back({"irot", torsional});
-  declare(*d, m.discretes.size(), {"x_force", "y_force", "z_force", "resultant_force", "displacement"});
+  declare(*d, m.discretes.size(),
+          {"x_force", "y_force", "z_force", "resultant_force", "displacement"});
   fills_.push_back([&m, &elements](std::vector<std::vector<double>>& v) {
     for (int e = 0; e < m.discretes.size(); ++e) {
       const Vec3d f = elements.force_vector(e);
@@ -278,7 +325,8 @@ void History::add_jntforc() {
     d->legend.push_back(m.joints[j].title);
   }
   declare(*d, joints.size(),
-          {"x_force", "y_force", "z_force", "x_moment", "y_moment", "z_moment", "resultant_force", "resultant_moment"});
+          {"x_force", "y_force", "z_force", "x_moment", "y_moment", "z_moment", "resultant_force",
+           "resultant_moment"});
   fills_.push_back([&joints](std::vector<std::vector<double>>& v) {
     for (int j = 0; j < joints.size(); ++j) {
       for (int k = 0; k < 3; ++k) v[k][j] = joints.force(j)[k], v[3 + k][j] = joints.moment(j)[k];

@@ -1,6 +1,7 @@
 #pragma once
 // Time-history databases of a run: which exist, what they hold, and their values at t(n).
-// Names and units as LS-DYNA users know them (docs/manual/guide.md); all values in the deck's units.
+// Names and units as LS-DYNA users know them (docs/manual/guide.md); all values in the deck's
+// units.
 #include <functional>
 #include <string>
 #include <vector>
@@ -10,8 +11,8 @@
 
 namespace fabrica {
 
-// Kinetic energy, mass and momentum by part, at t(n): a part owns the mass that its elements give to a node, a rigid
-// part what its body has.
+// Kinetic energy, mass and momentum by part, at t(n): a part owns the mass that its elements give
+// to a node, a rigid part what its body has.
 struct PartSums {
   std::vector<double> kinetic, mass, momentum[3];
 };
@@ -52,7 +53,8 @@ class History {
   std::vector<Fill> fills_;
 };
 
-// Force of the elements of a cross section on its nodes at t(n), moment about the mean of the nodes.
+// Force of the elements of a cross section on its nodes at t(n), moment about the mean of the
+// nodes.
 struct SectionForce {
   Vec3d force{0, 0, 0}, moment{0, 0, 0}, centroid{0, 0, 0};
 };

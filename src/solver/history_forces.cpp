@@ -43,7 +43,8 @@ void History::add_rcforc() {
   fills_.push_back([this](std::vector<std::vector<double>>& v) {
     const auto now = simulation_.contacts().resultants();
     for (std::size_t i = 0; i < now.size(); ++i) {
-      for (int k = 0; k < 3; ++k) v[k][2 * i] = now[i].side_a[k], v[k][2 * i + 1] = now[i].side_b[k];
+      for (int k = 0; k < 3; ++k)
+        v[k][2 * i] = now[i].side_a[k], v[k][2 * i + 1] = now[i].side_b[k];
       v[3][2 * i] = now[i].mass_a, v[3][2 * i + 1] = now[i].mass_b;
     }
   });
@@ -83,7 +84,8 @@ void History::add_spcforc() {
   d->ids = ids;
   d->integer_metadata.push_back({"force_ids", ids});
   d->integer_metadata.push_back({"moment_ids", ids});
-  declare(*d, int(ids.size()), {"x_force", "y_force", "z_force", "x_moment", "y_moment", "z_moment"});
+  declare(*d, int(ids.size()),
+          {"x_force", "y_force", "z_force", "x_moment", "y_moment", "z_moment"});
   declare(*d, 1, {"x_resultant", "y_resultant", "z_resultant"});
   fills_.push_back([&constraints](std::vector<std::vector<double>>& v) {
     const auto& reactions = constraints.reactions();
@@ -106,13 +108,14 @@ void History::add_secforc() {
     d->legend.push_back(m.cross_sections[i].title);
   }
   declare(*d, int(m.cross_sections.size()),
-          {"x_force", "y_force", "z_force", "total_force", "x_moment", "y_moment", "z_moment", "total_moment",
-           "x_centroid", "y_centroid", "z_centroid"});
+          {"x_force", "y_force", "z_force", "total_force", "x_moment", "y_moment", "z_moment",
+           "total_moment", "x_centroid", "y_centroid", "z_centroid"});
   fills_.push_back([this](std::vector<std::vector<double>>& v) {
     const Model& m = simulation_.model();
     for (std::size_t i = 0; i < m.cross_sections.size(); ++i) {
       const SectionForce f = section_force(simulation_, m.cross_sections[i]);
-      for (int k = 0; k < 3; ++k) v[k][i] = f.force[k], v[4 + k][i] = f.moment[k], v[8 + k][i] = f.centroid[k];
+      for (int k = 0; k < 3; ++k)
+        v[k][i] = f.force[k], v[4 + k][i] = f.moment[k], v[8 + k][i] = f.centroid[k];
       v[3][i] = norm(f.force), v[7][i] = norm(f.moment);
     }
   });
@@ -141,7 +144,8 @@ SectionForce section_force(const Simulation& simulation, const CrossSection& sec
   for (int e : section.discretes)
     for (int side = 0; side < 2; ++side) {
       const int n = m.discretes.node[e][side];
-      if (n >= 0 && inside[n]) out.force += (side == 0 ? 1.0 : -1.0) * simulation.discrete_elements().force_vector(e);
+      if (n >= 0 && inside[n])
+        out.force += (side == 0 ? 1.0 : -1.0) * simulation.discrete_elements().force_vector(e);
     }
   return out;
 }

@@ -1,5 +1,6 @@
 #pragma once
-// An element kernel bound to a material law, as the drivers call it: once per tile, never per element.
+// An element kernel bound to a material law, as the drivers call it: once per tile, never per
+// element.
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -23,8 +24,8 @@ struct alignas(4 * sizeof(Real)) ForceRecord {
   Real value[4];
 };
 
-// What one call works on. Blocks of block_size elements; the last block may be padded with copies of the tile's
-// last element whose forces are dropped.
+// What one call works on. Blocks of block_size elements; the last block may be padded with copies
+// of the tile's last element whose forces are dropped.
 struct TileView {
   int count = 0;                                // elements
   const std::uint16_t* connectivity = nullptr;  // [block][corner][block_size], local node numbers
@@ -53,7 +54,8 @@ struct ElementReadout {
   Sym3<double> stress[max_layers];
   double plastic_strain[max_layers] = {};
   double thickness = 0;
-  double resultants[8] = {};  // shells: mxx myy mxy qx qy nxx nyy nxy; beams: axial, shear s, t, moment s, t, torsion
+  double resultants[8] =
+      {};  // shells: mxx myy mxy qx qy nxx nyy nxy; beams: axial, shear s, t, moment s, t, torsion
   double alive = 1;
 };
 
@@ -70,24 +72,37 @@ class Kernel {
   virtual void initialise(const ElementParameters&, TileView&) const = 0;
   virtual void forces(const ElementParameters&, Real dt_previous, TileView&) const = 0;
   // lumped mass and rotary inertia of one element; x: corners in double
-  virtual void lump(const ElementParameters&, const Vec3d* x, const double* thickness, const Vec3d& orientation,
-                    double* mass, double* inertia) const = 0;
+  virtual void lump(const ElementParameters&, const Vec3d* x, const double* thickness,
+                    const Vec3d& orientation, double* mass, double* inertia) const = 0;
   // block: state of the element's block; lane: its place in it; x: corner positions
-  virtual void read(const ElementParameters&, const Real* block, int lane, const Vec3d* x, ElementReadout&) const = 0;
+  virtual void read(const ElementParameters&, const Real* block, int lane, const Vec3d* x,
+                    ElementReadout&) const = 0;
   virtual Elastic elastic() const = 0;
 };
 
 enum class ElementKind {
-  hex8, hex8_exact, hex8_full, tet4, tet4_nodal, penta6,
-  shell_bt, shell_triangle, shell_full, membrane, membrane_full,
-  truss, beam_resultant, beam_hughes_liu
+  hex8,
+  hex8_exact,
+  hex8_full,
+  tet4,
+  tet4_nodal,
+  penta6,
+  shell_bt,
+  shell_triangle,
+  shell_full,
+  membrane,
+  membrane_full,
+  truss,
+  beam_resultant,
+  beam_hughes_liu
 };
 
-// Makes the kernel of an element kind and a material card; throws std::invalid_argument with a reason that a user
-// understands when the law cannot be used in that element.
-std::unique_ptr<Kernel> make_kernel(ElementKind kind, const Material& material, const Parameters& parameters,
-                                    const Parameters* eos);
-std::unique_ptr<Kernel> make_solid_kernel(ElementKind, const Material&, const Parameters&, const Parameters* eos);
+// Makes the kernel of an element kind and a material card; throws std::invalid_argument with a
+// reason that a user understands when the law cannot be used in that element.
+std::unique_ptr<Kernel> make_kernel(ElementKind kind, const Material& material,
+                                    const Parameters& parameters, const Parameters* eos);
+std::unique_ptr<Kernel> make_solid_kernel(ElementKind, const Material&, const Parameters&,
+                                          const Parameters* eos);
 std::unique_ptr<Kernel> make_shell_kernel(ElementKind, const Material&, const Parameters&);
 std::unique_ptr<Kernel> make_beam_kernel(ElementKind, const Material&, const Parameters&);
 

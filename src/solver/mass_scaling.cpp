@@ -21,10 +21,12 @@ void MassScaling::start(const Model& model, State& state, Tiles& tiles) {
 void MassScaling::update(const Model& model, State& state, const Tiles& tiles) {
   if (!active() || first_cycle_only_) return;
   for (int t = 0; t < int(tiles.tiles.size()); ++t)
-    if (tiles.tiles[t].time_step < Real(step_)) add(model, state, tiles, t, tiles.steps.data() + tiles.tiles[t].step);
+    if (tiles.tiles[t].time_step < Real(step_))
+      add(model, state, tiles, t, tiles.steps.data() + tiles.tiles[t].step);
 }
 
-void MassScaling::add(const Model& model, State& state, const Tiles& tiles, int index, const Real* steps) {
+void MassScaling::add(const Model& model, State& state, const Tiles& tiles, int index,
+                      const Real* steps) {
   const Tile& t = tiles.tiles[index];
   const TileClass& c = tiles.classes[t.tile_class];
   const int N = c.kernel->corners();
@@ -32,7 +34,9 @@ void MassScaling::add(const Model& model, State& state, const Tiles& tiles, int 
     Real& floor = smallest_[t.step + i];
     if (!(steps[i] < floor) || !(steps[i] > 0)) continue;
     // mass of the element from its initial geometry
-    const std::uint16_t* local = &tiles.connectivity[t.connectivity + std::size_t(i / block_size) * N * block_size + i % block_size];
+    const std::uint16_t* local =
+        &tiles.connectivity[t.connectivity + std::size_t(i / block_size) * N * block_size +
+                            i % block_size];
     int node[8];
     Vec3d x[8];
     double m[8] = {}, inertia[8] = {}, h[4] = {0, 0, 0, 0};
@@ -62,14 +66,18 @@ void MassScaling::add(const Model& model, State& state, const Tiles& tiles, int 
 
 void MassScaling::save(std::ostream& out) const {
   out.write(reinterpret_cast<const char*>(&added_), sizeof added_);
-  out.write(reinterpret_cast<const char*>(smallest_.data()), std::streamsize(smallest_.size() * sizeof(Real)));
-  out.write(reinterpret_cast<const char*>(part_added_.data()), std::streamsize(part_added_.size() * sizeof(double)));
+  out.write(reinterpret_cast<const char*>(smallest_.data()),
+            std::streamsize(smallest_.size() * sizeof(Real)));
+  out.write(reinterpret_cast<const char*>(part_added_.data()),
+            std::streamsize(part_added_.size() * sizeof(double)));
 }
 
 void MassScaling::load(std::istream& in) {
   in.read(reinterpret_cast<char*>(&added_), sizeof added_);
-  in.read(reinterpret_cast<char*>(smallest_.data()), std::streamsize(smallest_.size() * sizeof(Real)));
-  in.read(reinterpret_cast<char*>(part_added_.data()), std::streamsize(part_added_.size() * sizeof(double)));
+  in.read(reinterpret_cast<char*>(smallest_.data()),
+          std::streamsize(smallest_.size() * sizeof(Real)));
+  in.read(reinterpret_cast<char*>(part_added_.data()),
+          std::streamsize(part_added_.size() * sizeof(double)));
 }
 
 }  // namespace fabrica

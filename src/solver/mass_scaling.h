@@ -1,8 +1,10 @@
 #pragma once
-// Conventional mass scaling (*CONTROL_TIMESTEP, DT2MS < 0): elements whose own step is below |DT2MS| get heavier,
-//   dm = m ((|DT2MS| / dt_e)^2 - 1)                                                                        (1)
-// spread to their nodes like their mass. Mass is only ever added. Added mass brings kinetic energy into a moving
-// node; it is booked as such. Source: LS-DYNA keyword manual (public), *CONTROL_TIMESTEP.
+// Conventional mass scaling (*CONTROL_TIMESTEP, DT2MS < 0): elements whose own step is below
+// |DT2MS| get heavier,
+//   dm = m ((|DT2MS| / dt_e)^2 - 1) (1)
+// spread to their nodes like their mass. Mass is only ever added. Added mass brings kinetic energy
+// into a moving node; it is booked as such. Source: LS-DYNA keyword manual (public),
+// *CONTROL_TIMESTEP.
 #include <iosfwd>
 #include <vector>
 
@@ -35,7 +37,7 @@ class MassScaling {
   void add(const Model& model, State& state, const Tiles& tiles, int tile, const Real* steps);
   double step_;
   bool first_cycle_only_;
-  std::vector<Real> smallest_;    // smallest step that mass was added for, by tile.step + slot
+  std::vector<Real> smallest_;  // smallest step that mass was added for, by tile.step + slot
   std::vector<double> part_added_;
   double added_ = 0;
 };

@@ -15,7 +15,8 @@ void NodalPressure::build(const Tiles& tiles) {
   for (const Tile& t : tiles.tiles) {
     const TileClass& c = tiles.classes[t.tile_class];
     if (!c.kernel->nodal_pressure()) continue;
-    for (int k = t.node_first; k < t.node_first + t.node_count; ++k) all.emplace_back(c.part, tiles.node[k], k);
+    for (int k = t.node_first; k < t.node_first + t.node_count; ++k)
+      all.emplace_back(c.part, tiles.node[k], k);
   }
   std::sort(all.begin(), all.end());
   std::vector<double> bulk_of_part;
@@ -52,7 +53,8 @@ void NodalPressure::advance(const Tiles& tiles, double dt, Team& team) {
 }
 
 void NodalPressure::save(std::ostream& out) const {
-  out.write(reinterpret_cast<const char*>(value_.data()), std::streamsize(value_.size() * sizeof(double)));
+  out.write(reinterpret_cast<const char*>(value_.data()),
+            std::streamsize(value_.size() * sizeof(double)));
 }
 void NodalPressure::load(std::istream& in) {
   in.read(reinterpret_cast<char*>(value_.data()), std::streamsize(value_.size() * sizeof(double)));

@@ -1,5 +1,6 @@
 #pragma once
-// Orders points so that consecutive groups of `size` are compact: recursive bisection along the longest side.
+// Orders points so that consecutive groups of `size` are compact: recursive bisection along the
+// longest side.
 #include <algorithm>
 #include <numeric>
 #include <vector>
@@ -18,7 +19,8 @@ inline void bisect(const std::vector<Vec3d>& x, int* first, int* last, int size)
   }
   Vec3d low = x[*first], high = low;
   for (int* i = first; i != last; ++i)
-    for (int d = 0; d < 3; ++d) low[d] = std::min(low[d], x[*i][d]), high[d] = std::max(high[d], x[*i][d]);
+    for (int d = 0; d < 3; ++d)
+      low[d] = std::min(low[d], x[*i][d]), high[d] = std::max(high[d], x[*i][d]);
   const Vec3d side = high - low;
   const int axis = side.x >= side.y ? (side.x >= side.z ? 0 : 2) : (side.y >= side.z ? 1 : 2);
   // the left part is a whole number of tiles

@@ -192,7 +192,9 @@ RigidBodies::Mass RigidBodies::mass_of(const State& state, const Seed& seed) con
     // in place of its mean, which the node carries
     const auto& i = own.inertia;
     const double mean = (i[0] + i[3] + i[5]) / 3;
-    m.inertia = m.inertia + Mat3d{{{i[0] - mean, i[1], i[2]}, {i[1], i[3] - mean, i[4]}, {i[2], i[4], i[5] - mean}}};
+    m.inertia =
+        m.inertia +
+        Mat3d{{{i[0] - mean, i[1], i[2]}, {i[1], i[3] - mean, i[4]}, {i[2], i[4], i[5] - mean}}};
   }
   return m;
 }

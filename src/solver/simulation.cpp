@@ -14,10 +14,12 @@ int chunks_of(int n) { return (n + chunk_size - 1) / chunk_size; }
 // calls fn(first, last) for fixed chunks of 0..n
 template <class Fn>
 void for_chunks(Team& team, int n, Fn fn) {
-  team.for_each(chunks_of(n), [&](int c, int) { fn(c * chunk_size, std::min(n, (c + 1) * chunk_size)); });
+  team.for_each(chunks_of(n),
+                [&](int c, int) { fn(c * chunk_size, std::min(n, (c + 1) * chunk_size)); });
 }
 
-// a force that would move the mean node by a mean element length in one step: scales the fixed-point sums
+// a force that would move the mean node by a mean element length in one step: scales the
+// fixed-point sums
 double force_scale(const Model& model, const State& state, double step) {
   double mass = 0;
   Vec3d low = model.nodes.x.empty() ? Vec3d{0, 0, 0} : model.nodes.x[0], high = low;
@@ -31,7 +33,10 @@ double force_scale(const Model& model, const State& state, double step) {
 }  // namespace
 
 Simulation::Simulation(const Model& model, const RunOptions& options, Diagnostics& diagnostics)
-    : model_(model), team_(options.threads), tiles_(model, diagnostics), mass_scaling_(model.controls) {
+    : model_(model),
+      team_(options.threads),
+      tiles_(model, diagnostics),
+      mass_scaling_(model.controls) {
   end_time_ = options.end_time > 0 ? options.end_time : model.controls.end_time;
   set_up_masses(diagnostics);
   if (diagnostics.has_errors()) return;
@@ -70,8 +75,9 @@ void Simulation::set_up_masses(Diagnostics& diagnostics) {
     inertia[m.node] += (m.inertia[0] + m.inertia[3] + m.inertia[5]) / 3;
   }
   // torsional springs and discrete beams turn with their nodes, whose inertia may be that of a body
-  const bool rotations = std::any_of(inertia.begin(), inertia.end(), [](double j) { return j > 0; }) ||
-                         DiscreteElements::turn_nodes(model_);
+  const bool rotations =
+      std::any_of(inertia.begin(), inertia.end(), [](double j) { return j > 0; }) ||
+      DiscreteElements::turn_nodes(model_);
   state_.nodes.resize(n);
   state_.force.assign(n, Vec3d{0, 0, 0});
   state_.owner.assign(n, NodeOwner::free);
@@ -89,16 +95,18 @@ void Simulation::set_up_masses(Diagnostics& diagnostics) {
     for (int i = 0; i < n; ++i) state_.spins[i] = {{0, 0, 0}, inertia[i], {1, 0, 0, 0}};
   }
   if (physical_mass_ <= 0)
-    diagnostics.error("no-mass", {}, "", "", "the model has no mass", "Check densities and section properties");
+    diagnostics.error("no-mass", {}, "", "", "the model has no mass",
+                      "Check densities and section properties");
 }
 
-// A step near the first one, before any force is known; models without deformable elements take what their springs
-// ask for, or what resolves their motion.
+// A step near the first one, before any force is known; models without deformable elements take
+// what their springs ask for, or what resolves their motion.
 double Simulation::first_step() {
   double step = initial_step_;
   if (step >= 1e29) {
     size_interaction(1);
-    discrete_->forces(model_, state_, team_);  // the tangents; nothing has moved, so that no memory is touched
+    discrete_->forces(model_, state_,
+                      team_);  // the tangents; nothing has moved, so that no memory is touched
     step = discrete_->time_step(state_);
     if (model_.controls.time_step_curve >= 0)
       step = std::min(step, model_.curves[model_.controls.time_step_curve].at(0));
@@ -107,12 +115,14 @@ double Simulation::first_step() {
   return step;
 }
 
-// the sums of contacts, springs and joints, empty, in fixed point fit for forces that act within a step
+// the sums of contacts, springs and joints, empty, in fixed point fit for forces that act within a
+// step
 void Simulation::size_interaction(double step) {
   const std::size_t n = state_.nodes.size();
   const double scale = force_scale(model_, state_, step);
   state_.interaction.resize(n, FixedScale::of(scale));
-  if (!state_.spins.empty()) state_.interaction_moment.resize(n, FixedScale::of(scale * model_size()));
+  if (!state_.spins.empty())
+    state_.interaction_moment.resize(n, FixedScale::of(scale * model_size()));
 }
 
 void Simulation::step(const Sampler& sampler) {

@@ -1,5 +1,6 @@
 #pragma once
-// A run: the model, its state and the passes of one step in the order of the physics (docs/step.md).
+// A run: the model, its state and the passes of one step in the order of the physics
+// (docs/step.md).
 #include <functional>
 #include <iosfwd>
 #include <memory>
@@ -24,19 +25,27 @@ namespace fabrica {
 
 struct RunOptions {
   int threads = 1;
-  double end_time = 0;     // 0: the deck's
+  double end_time = 0;  // 0: the deck's
   bool energy_audit = false;
 };
 
-// Asked at t(n) of every step; when wants() says yes, sample() is called once forces, energies, x(n), v(n+1/2) and
-// the remembered v(n-1/2) are all there.
+// Asked at t(n) of every step; when wants() says yes, sample() is called once forces, energies,
+// x(n), v(n+1/2) and the remembered v(n-1/2) are all there.
 struct Sampler {
   std::function<bool(double time)> wants;
   std::function<void()> sample;
 };
 
 // why a run ended
-enum class Ending { running, end_time, end_cycle, signal, time_step_too_small, negative_volume, not_a_number };
+enum class Ending {
+  running,
+  end_time,
+  end_cycle,
+  signal,
+  time_step_too_small,
+  negative_volume,
+  not_a_number
+};
 
 // who sets the time step
 struct TimeStepOwner {
@@ -85,7 +94,8 @@ class Simulation {
   const std::vector<double>& part_internal() const { return part_internal_; }
   const std::vector<double>& part_hourglass() const { return part_hourglass_; }
   const MassScaling& mass_scaling() const { return mass_scaling_; }
-  // of a node at t(n), while sampling: mean of the two half-step velocities, and their difference over the step
+  // of a node at t(n), while sampling: mean of the two half-step velocities, and their difference
+  // over the step
   Vec3d velocity(int node) const;
   Vec3d acceleration(int node) const;
 

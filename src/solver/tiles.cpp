@@ -12,7 +12,9 @@
 namespace fabrica {
 namespace {
 
-constexpr int tile_size(Family family, int corners) { return family == Family::solid && corners == 4 ? 512 : 256; }
+constexpr int tile_size(Family family, int corners) {
+  return family == Family::solid && corners == 4 ? 512 : 256;
+}
 
 // one element of a class before it is put into a tile
 struct Member {
@@ -35,7 +37,8 @@ struct Group {
 
 class GroupBuilder {
  public:
-  GroupBuilder(const Model& model, Diagnostics& diagnostics) : model_(model), diagnostics_(diagnostics) {}
+  GroupBuilder(const Model& model, Diagnostics& diagnostics)
+      : model_(model), diagnostics_(diagnostics) {}
 
   void add(Family family, int part, int element, int corners, const std::array<int, 8>& node) {
     ElementKind kind;
@@ -55,7 +58,8 @@ class GroupBuilder {
   void report(int part, const std::string& message) {
     if (reported_[part]++) return;
     const Part& p = model_.parts[part];
-    diagnostics_.error("unsupported-formulation", p.where, "PART", "", "part " + std::to_string(p.id) + ": " + message,
+    diagnostics_.error("unsupported-formulation", p.where, "PART", "",
+                       "part " + std::to_string(p.id) + ": " + message,
                        "Choose another element formulation or material");
   }
 
@@ -85,13 +89,16 @@ void collect(const Model& model, GroupBuilder& b) {
     const auto& n = model.shells.node[e];
     // membranes take triangles as quadrilaterals with a repeated corner
     const int part = model.shells.part[e];
-    const int form = model.parts[part].section >= 0 ? model.sections[model.parts[part].section].formulation : 0;
+    const int form =
+        model.parts[part].section >= 0 ? model.sections[model.parts[part].section].formulation : 0;
     const bool triangle = (n[3] == n[2] || n[3] < 0) && form != 5 && form != 9;
-    b.add(Family::shell, model.shells.part[e], e, triangle ? 3 : 4, {n[0], n[1], n[2], n[3] < 0 ? n[2] : n[3]});
+    b.add(Family::shell, model.shells.part[e], e, triangle ? 3 : 4,
+          {n[0], n[1], n[2], n[3] < 0 ? n[2] : n[3]});
   }
   for (int e = 0; e < model.beams.size(); ++e) {
     const int part = model.beams.part[e];
-    if (!needs_kernel(model, part) || model.sections[model.parts[part].section].formulation == 6) continue;
+    if (!needs_kernel(model, part) || model.sections[model.parts[part].section].formulation == 6)
+      continue;
     const auto& n = model.beams.node[e];
     b.add(Family::beam, part, e, 2, {n[0], n[1]});
   }
@@ -130,10 +137,11 @@ Tiles::Tiles(const Model& model, Diagnostics& diagnostics) {
 
       // compact tiles by recursive bisection of the element centres
       std::vector<Vec3d> at(group.members.size());
-      for (std::size_t i = 0; i < at.size(); ++i) at[i] = centre(model, group.members[i], group.corners);
+      for (std::size_t i = 0; i < at.size(); ++i)
+        at[i] = centre(model, group.members[i], group.corners);
       const int size = tile_size(p.family, group.corners);
       std::vector<int> order = compact_order(at, size);
-      auto& places = p.family == Family::solid ? place_of_solid
+      auto& places = p.family == Family::solid   ? place_of_solid
                      : p.family == Family::shell ? place_of_shell
                                                  : place_of_beam;
       for (int first = 0; first < int(order.size()); first += size) {
@@ -150,8 +158,8 @@ Tiles::Tiles(const Model& model, Diagnostics& diagnostics) {
           for (int a = 0; a < N; ++a) {
             int& l = local[member.node[a]];
             if (l < 0) l = int(node.size()) - t.node_first, node.push_back(member.node[a]);
-            connectivity[t.connectivity + (std::size_t(i / block_size) * N + a) * block_size + i % block_size] =
-                std::uint16_t(l);
+            connectivity[t.connectivity + (std::size_t(i / block_size) * N + a) * block_size +
+                         i % block_size] = std::uint16_t(l);
           }
           if (i < t.count) {
             places[member.element] = {int(tiles.size()), i};
@@ -206,7 +214,8 @@ void Tiles::initialise(const Model& model) {
     nodes.assign(t.node_count, {}), spins.assign(t.node_count, {});
     for (int k = 0; k < t.node_count; ++k)
       for (int d = 0; d < 3; ++d)
-        nodes[k].value[d] = Real(model.nodes.x[node[t.node_first + k]][d] - model.nodes.x[t.anchor][d]);
+        nodes[k].value[d] =
+            Real(model.nodes.x[node[t.node_first + k]][d] - model.nodes.x[t.anchor][d]);
     std::vector<float> thickness(4 * t.count, 0.f);
     std::vector<Vec3d> orientation(t.count, Vec3d{0, 0, 0});
     for (int i = 0; i < t.count; ++i) {
@@ -225,7 +234,8 @@ void Tiles::initialise(const Model& model) {
       }
       Vec3d x[8];
       double m[8], j[8];
-      const std::uint16_t* index = &connectivity[t.connectivity + std::size_t(i / block_size) * N * block_size];
+      const std::uint16_t* index =
+          &connectivity[t.connectivity + std::size_t(i / block_size) * N * block_size];
       int global[8];
       for (int a = 0; a < N; ++a) {
         global[a] = node[t.node_first + index[a * block_size + i % block_size]];
@@ -251,12 +261,14 @@ void Tiles::add_into(std::vector<double>& mass, std::vector<double>& inertia) co
   for (std::size_t n = 0; n < mass.size(); ++n) mass[n] += mass_[n], inertia[n] += inertia_[n];
 }
 
-void Tiles::fill_nodes(const State& state, const Tile& t, NodeRecord* nodes, SpinRecord* spins) const {
+void Tiles::fill_nodes(const State& state, const Tile& t, NodeRecord* nodes,
+                       SpinRecord* spins) const {
   const NodeMotion& anchor = state.nodes[t.anchor];
   const int* global = node.data() + t.node_first;
 #if defined(__AVX512F__)
   if constexpr (sizeof(Real) == 4) {
-    alignas(64) const double origin[8] = {anchor.x.x, anchor.x.y, anchor.x.z, anchor.v.x, anchor.v.y, anchor.v.z, 0, 0};
+    alignas(64) const double origin[8] = {anchor.x.x, anchor.x.y, anchor.x.z, anchor.v.x,
+                                          anchor.v.y, anchor.v.z, 0,          0};
     const __m512d o = _mm512_load_pd(origin);
     for (int k = 0; k < t.node_count; ++k) {
       const __m512d line = _mm512_load_pd(&state.nodes[global[k]].x.x);
@@ -359,15 +371,19 @@ void Tiles::sum_partials(State& state, int a, int b) const {
 }
 
 const std::vector<ElementPlace>& Tiles::places(Family family) const {
-  return family == Family::solid ? place_of_solid : family == Family::shell ? place_of_shell : place_of_beam;
+  return family == Family::solid   ? place_of_solid
+         : family == Family::shell ? place_of_shell
+                                   : place_of_beam;
 }
 
-int Tiles::corner_forces(const State& state, Family family, int e, int* global, Vec3d* f, Vec3d* m) const {
+int Tiles::corner_forces(const State& state, Family family, int e, int* global, Vec3d* f,
+                         Vec3d* m) const {
   const ElementPlace place = places(family)[e];
   if (place.tile < 0) return 0;
   const Tile& t = tiles[place.tile];
   const TileClass& c = classes[t.tile_class];
-  const int N = c.kernel->corners(), block = place.slot / block_size, lane = place.slot % block_size;
+  const int N = c.kernel->corners(), block = place.slot / block_size,
+            lane = place.slot % block_size;
   // a tile of one element: its history and connectivity in the first lane, repeated
   AlignedVector<Real> history(std::size_t(c.fields) * block_size);
   for (int k = 0; k < c.fields; ++k)
@@ -409,13 +425,15 @@ ElementReadout Tiles::read(const Model&, const State& state, Family family, int 
   if (e >= int(places.size()) || places[e].tile < 0) return out;
   const Tile& t = tiles[places[e].tile];
   const TileClass& c = classes[t.tile_class];
-  const int N = c.kernel->corners(), slot = places[e].slot, block = slot / block_size, lane = slot % block_size;
+  const int N = c.kernel->corners(), slot = places[e].slot, block = slot / block_size,
+            lane = slot % block_size;
   Vec3d x[8];
   for (int a = 0; a < N; ++a) {
     const int l = connectivity[t.connectivity + (std::size_t(block) * N + a) * block_size + lane];
     x[a] = state.nodes[node[t.node_first + l]].x;
   }
-  c.kernel->read(c.parameters, state_.data() + t.state + std::size_t(block) * c.fields * block_size, lane, x, out);
+  c.kernel->read(c.parameters, state_.data() + t.state + std::size_t(block) * c.fields * block_size,
+                 lane, x, out);
   return out;
 }
 
@@ -423,7 +441,9 @@ void Tiles::element_steps(const State& state, int tile, std::vector<Real>& steps
   const Tile& t = tiles[tile];
   const TileClass& c = classes[t.tile_class];
   const int blocks = (t.count + block_size - 1) / block_size;
-  AlignedVector<Real> history(state_.begin() + t.state, state_.begin() + t.state + std::size_t(blocks) * c.fields * block_size);
+  AlignedVector<Real> history(
+      state_.begin() + t.state,
+      state_.begin() + t.state + std::size_t(blocks) * c.fields * block_size);
   AlignedVector<NodeRecord> nodes(t.node_count);
   AlignedVector<SpinRecord> spins(t.node_count);
   AlignedVector<ForceRecord> f(t.node_count), m(t.node_count);
@@ -433,7 +453,8 @@ void Tiles::element_steps(const State& state, int tile, std::vector<Real>& steps
   view.count = t.count;
   view.connectivity = connectivity.data() + t.connectivity;
   view.state = history.data();
-  view.nodes = nodes.data(), view.spins = spins.data(), view.force = f.data(), view.moment = m.data();
+  view.nodes = nodes.data(), view.spins = spins.data(), view.force = f.data(),
+  view.moment = m.data();
   view.element_time_step = out.data();
   c.kernel->forces(c.parameters, Real(0), view);
   steps.assign(out.begin(), out.begin() + t.count);
@@ -449,7 +470,8 @@ void Tiles::save(std::ostream& out) const {
 void Tiles::load(std::istream& in) {
   std::uint64_t n = 0;
   in.read(reinterpret_cast<char*>(&n), sizeof n);
-  if (n != state_.size()) throw std::runtime_error("restart file does not belong to this deck: element history differs");
+  if (n != state_.size())
+    throw std::runtime_error("restart file does not belong to this deck: element history differs");
   in.read(reinterpret_cast<char*>(state_.data()), std::streamsize(n * sizeof(Real)));
   nodal_pressure_.load(in);
 }

@@ -9,16 +9,23 @@ namespace {
 
 const char* family_name(Family f) {
   switch (f) {
-    case Family::solid: return "solid";
-    case Family::shell: return "shell";
-    case Family::beam: return "beam";
-    case Family::discrete: return "discrete";
-    default: return "";
+    case Family::solid:
+      return "solid";
+    case Family::shell:
+      return "shell";
+    case Family::beam:
+      return "beam";
+    case Family::discrete:
+      return "discrete";
+    default:
+      return "";
   }
 }
 
 std::int64_t element_id(const Model& model, Family f, int e) {
-  return f == Family::solid ? model.solids.id[e] : f == Family::shell ? model.shells.id[e] : model.beams.id[e];
+  return f == Family::solid   ? model.solids.id[e]
+         : f == Family::shell ? model.shells.id[e]
+                              : model.beams.id[e];
 }
 
 }  // namespace
@@ -33,26 +40,30 @@ double Simulation::smallest_element_step() {
   return step;
 }
 
-// Smallest stable step of all elements times TSSFAC; it may drop at once but grows by at most 5 % a cycle.
+// Smallest stable step of all elements times TSSFAC; it may drop at once but grows by at most 5 % a
+// cycle.
 void Simulation::choose_time_step() {
   double step = 1e30;
   for (const Tile& t : tiles_.tiles) step = std::min(step, double(t.time_step));
   if (mass_scaling_.active()) step = std::max(step, mass_scaling_.step());
   step = std::min(step, discrete_->time_step(state_));
   step *= model_.controls.time_step_scale;
-  if (state_.cycle == 0 && model_.controls.initial_time_step > 0) step = model_.controls.initial_time_step;
+  if (state_.cycle == 0 && model_.controls.initial_time_step > 0)
+    step = model_.controls.initial_time_step;
   if (model_.controls.time_step_curve >= 0)
     step = std::min(step, model_.curves[model_.controls.time_step_curve].at(state_.time));
   if (state_.dt_previous > 0) step = std::min(step, 1.05 * state_.dt_previous);
   // a model without deformable elements takes what resolves its motion
   if (step >= 1e29) step = end_time_ / 1000;
   if (state_.cycle == 0) initial_step_ = step;
-  if (!(step > 0) || !std::isfinite(step)) return end(Ending::not_a_number, "the time step is not a number");
+  if (!(step > 0) || !std::isfinite(step))
+    return end(Ending::not_a_number, "the time step is not a number");
   const double limit = model_.controls.minimum_time_step_factor * initial_step_;
   if (step < limit) {
     const TimeStepOwner o = time_step_owner();
     return end(Ending::time_step_too_small, "the time step fell below DTMIN in " + o.family + " " +
-                                                std::to_string(o.element) + " of part " + std::to_string(o.part));
+                                                std::to_string(o.element) + " of part " +
+                                                std::to_string(o.part));
   }
   state_.dt = step;
 }
@@ -88,8 +99,9 @@ void Simulation::check_health() {
     const bool broken = !std::isfinite(t.internal) || !std::isfinite(t.hourglass);
     if (broken || (c.family == Family::solid && t.smallest_volume <= 0)) {
       const TimeStepOwner o = worst_element(i);
-      const std::string where = o.family + " element " + std::to_string(o.element) + " of part " + std::to_string(o.part) +
-                                " (" + model_.parts[c.part].title + ") at t = " + std::to_string(state_.time);
+      const std::string where = o.family + " element " + std::to_string(o.element) + " of part " +
+                                std::to_string(o.part) + " (" + model_.parts[c.part].title +
+                                ") at t = " + std::to_string(state_.time);
       return end(broken ? Ending::not_a_number : Ending::negative_volume,
                  (broken ? "stress is not a number in " : "negative volume in ") + where);
     }

@@ -28,8 +28,8 @@ std::vector<std::vector<std::size_t>> grid(const std::vector<std::size_t>& count
 
 std::vector<std::vector<double>> latin_hypercube(int samples, int dimensions, std::uint64_t seed) {
   std::mt19937_64 engine(seed);
-  std::vector<std::vector<double>> points(static_cast<std::size_t>(samples),
-                                          std::vector<double>(static_cast<std::size_t>(dimensions)));
+  std::vector<std::vector<double>> points(
+      static_cast<std::size_t>(samples), std::vector<double>(static_cast<std::size_t>(dimensions)));
   std::vector<int> stretch(static_cast<std::size_t>(samples));
   for (std::size_t d = 0; d < std::size_t(dimensions); ++d) {
     // a random order of the stretches (Fisher and Yates)

@@ -41,8 +41,10 @@ TEST_CASE("the seed alone decides the points of a hypercube") {
 TEST_CASE("rank correlation is that of Spearman's formula") {
   CHECK(rank_correlation({1, 2, 3, 4}, {10, 20, 30, 400}) == doctest::Approx(1));
   CHECK(rank_correlation({1, 2, 3, 4}, {4, 3, 2, 1}) == doctest::Approx(-1));
-  CHECK(rank_correlation({1, 2, 3, 4, 5}, {2, 1, 4, 3, 5}) == doctest::Approx(1 - 6.0 * 4 / (5 * 24)));
+  CHECK(rank_correlation({1, 2, 3, 4, 5}, {2, 1, 4, 3, 5}) ==
+        doctest::Approx(1 - 6.0 * 4 / (5 * 24)));
   // ranks 0, 1.5, 1.5, 3 against 0, 1, 2, 3: covariance 4.5, variances 4.5 and 5
-  CHECK(rank_correlation({1, 2, 2, 3}, {1, 2, 3, 4}) == doctest::Approx(4.5 / std::sqrt(4.5 * 5.0)));
+  CHECK(rank_correlation({1, 2, 2, 3}, {1, 2, 3, 4}) ==
+        doctest::Approx(4.5 / std::sqrt(4.5 * 5.0)));
   CHECK(mean_error({1.1, 0.8}, {1, 1}) == doctest::Approx(0.15));
 }

@@ -80,7 +80,9 @@ class Deck {
     springs_ += fmt::format("{},{},{},{}\n", ++spring_count, part, a, b);
     return spring_count;
   }
-  void mass(int node, double m) { masses_ += fmt::format("{},{},{:.17g}\n", ++mass_count, node, m); }
+  void mass(int node, double m) {
+    masses_ += fmt::format("{},{},{:.17g}\n", ++mass_count, node, m);
+  }
   std::string text() const {
     std::string t = "*KEYWORD\n" + text_;
     const auto add = [&](const char* name, const std::string& lines) {
@@ -114,9 +116,9 @@ Grid bricks(Deck& deck, int nx, int ny, int nz, Place place, Code code, int part
     for (int j = 0; j < ny; ++j)
       for (int i = 0; i < nx; ++i)
         g.elements.push_back(
-            deck.solid(part, {g.at(i, j, k), g.at(i + 1, j, k), g.at(i + 1, j + 1, k), g.at(i, j + 1, k),
-                              g.at(i, j, k + 1), g.at(i + 1, j, k + 1), g.at(i + 1, j + 1, k + 1),
-                              g.at(i, j + 1, k + 1)}));
+            deck.solid(part, {g.at(i, j, k), g.at(i + 1, j, k), g.at(i + 1, j + 1, k),
+                              g.at(i, j + 1, k), g.at(i, j, k + 1), g.at(i + 1, j, k + 1),
+                              g.at(i + 1, j + 1, k + 1), g.at(i, j + 1, k + 1)}));
   return g;
 }
 

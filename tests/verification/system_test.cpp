@@ -9,8 +9,8 @@ using namespace fabrica::verification;
 
 namespace {
 
-// Two plastic blocks that collide, the upper with a rigid cube joined to a second one by a ball joint,
-// springs and dampers across, shells beside, and a wall underneath.
+// Two plastic blocks that collide, the upper with a rigid cube joined to a second one by a ball
+// joint, springs and dampers across, shells beside, and a wall underneath.
 Deck mixed(int seed) {
   Deck deck;
   deck.end(0.4).constant_step(1e-4, 9);
@@ -21,13 +21,19 @@ Deck mixed(int seed) {
   deck.key("MAT_RIGID").card(2, 7.85e-6, 20.0, 0.3);
   deck.key("MAT_SPRING_ELASTIC").card(3, 0.01 + 1e-4 * seed);
   deck.key("MAT_DAMPER_VISCOUS").card(4, 1e-4);
-  deck.part(1, 1, 1).part(2, 1, 1).part(3, 1, 2).part(4, 1, 2).part(5, 2, 1).part(6, 3, 3).part(7, 3, 4);
+  deck.part(1, 1, 1).part(2, 1, 1).part(3, 1, 2).part(4, 1, 2).part(5, 2, 1).part(6, 3, 3).part(
+      7, 3, 4);
   const double shift = 0.01 * (seed % 17);
   const auto free = [](int, int, int) { return 0; };
-  const Grid low = bricks(deck, 3, 3, 3, [](int i, int j, int k) { return Vec3d(i, j, k + 0.02); }, free, 1);
-  const Grid up = bricks(deck, 2, 2, 2, [&](int i, int j, int k) { return Vec3d(i + 0.4 + shift, j + 0.3, k + 3.07); }, free, 2);
-  const Grid r1 = bricks(deck, 1, 1, 1, [](int i, int j, int k) { return Vec3d(i + 6, j, k); }, free, 3);
-  const Grid r2 = bricks(deck, 1, 1, 1, [](int i, int j, int k) { return Vec3d(i + 8, j, k); }, free, 4);
+  const Grid low = bricks(
+      deck, 3, 3, 3, [](int i, int j, int k) { return Vec3d(i, j, k + 0.02); }, free, 1);
+  const Grid up = bricks(
+      deck, 2, 2, 2, [&](int i, int j, int k) { return Vec3d(i + 0.4 + shift, j + 0.3, k + 3.07); },
+      free, 2);
+  const Grid r1 = bricks(
+      deck, 1, 1, 1, [](int i, int j, int k) { return Vec3d(i + 6, j, k); }, free, 3);
+  const Grid r2 = bricks(
+      deck, 1, 1, 1, [](int i, int j, int k) { return Vec3d(i + 8, j, k); }, free, 4);
   int s[3][3];
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i < 3; ++i) s[i][j] = deck.node(Vec3d(-3 + i, j, 0.3 + 0.1 * i * j));
@@ -63,9 +69,10 @@ Before velocities(const State& s) {
 
 }  // namespace
 
-// V09: K(n) = 1/2 m v(n-1/2).v(n+1/2) and, with one step dt, K(n+1) - K(n) = dt/2 (f(n) + f(n+1)).v(n+1/2)
-// for whatever forces act. Forces are the solver's sums; nodes that a wall or a body moves in the
-// step obey other laws and are left out. The sum over all nodes is compared with the work done.
+// V09: K(n) = 1/2 m v(n-1/2).v(n+1/2) and, with one step dt, K(n+1) - K(n) = dt/2 (f(n) +
+// f(n+1)).v(n+1/2) for whatever forces act. Forces are the solver's sums; nodes that a wall or a
+// body moves in the step obey other laws and are left out. The sum over all nodes is compared with
+// the work done.
 TEST_CASE("V09: kinetic energy changes by the work of the forces, to the last digits") {
   double worst = 0;
   long compared = 0;
@@ -112,7 +119,8 @@ TEST_CASE("V09: kinetic energy changes by the work of the forces, to the last di
 // V15: the same bits for 1, 2 and 3 threads, and over a restart in the middle.
 TEST_CASE("V15: a mixed model has the same bits for any thread count and over a restart") {
   std::vector<std::uint64_t> hash, energy_bits;
-  const std::string path = (std::filesystem::temp_directory_path() / "fabrica_verification_restart").string();
+  const std::string path =
+      (std::filesystem::temp_directory_path() / "fabrica_verification_restart").string();
   for (int threads : {1, 2, 3}) {
     Run run(mixed(3), threads);
     for (int i = 0; i < 2000; ++i) {

@@ -1,4 +1,5 @@
-// Waves in bars of one-point bricks (V05 to V08, V10). kg mm ms kN GPa; nu = 0, so that a bar is a bar.
+// Waves in bars of one-point bricks (V05 to V08, V10). kg mm ms kN GPa; nu = 0, so that a bar is a
+// bar.
 #include <cmath>
 
 #include "deck.h"
@@ -18,8 +19,9 @@ Grid bar(Deck& deck, int n, Code code) {
   deck.key("SECTION_SOLID").card(1, 1);
   deck.key("MAT_ELASTIC").card(1, rho, young, 0.0);
   deck.part(1, 1, 1);
-  return bricks(deck, 1, 1, n, [](int i, int j, int k) { return Vec3d(i, j, k); },
-                [&](int, int, int k) { return code(k); }, 1);
+  return bricks(
+      deck, 1, 1, n, [](int i, int j, int k) { return Vec3d(i, j, k); },
+      [&](int, int, int k) { return code(k); }, 1);
 }
 
 std::vector<int> layer(const Grid& g, int k) {
@@ -69,9 +71,10 @@ TEST_CASE("V05: a bar hits a rigid wall") {
   CHECK(momentum > 0);
 }
 
-// V05 at Courant 1, h = c dt, without viscosity: the scheme is exact. Behind the front every element has the stress
-// rho c v, ahead none, with no element between; the bar leaves with -v, but for the momentum that the wall takes from its
-// first layer. The strain v/c = 2e-7 is small, so that the step stays h/c.
+// V05 at Courant 1, h = c dt, without viscosity: the scheme is exact. Behind the front every
+// element has the stress rho c v, ahead none, with no element between; the bar leaves with -v, but
+// for the momentum that the wall takes from its first layer. The strain v/c = 2e-7 is small, so
+// that the step stays h/c.
 TEST_CASE("V05: a bar hits a rigid wall at Courant 1 and the wave is exact") {
   Deck deck;
   deck.end(0.06).no_bulk_viscosity();
@@ -83,7 +86,8 @@ TEST_CASE("V05: a bar hits a rigid wall at Courant 1 and the wave is exact") {
   deck.key("INITIAL_VELOCITY").card(0).card(0, 0, -v);
   deck.key("RIGIDWALL_PLANAR").card(0).card(0, 0, 0, 0, 0, 1.0);
   Run run(deck);
-  for (int i = 0; i <= 80; ++i) REQUIRE(run.step());  // the first finds the wall; then 80 elements are reached
+  for (int i = 0; i <= 80; ++i)
+    REQUIRE(run.step());  // the first finds the wall; then 80 elements are reached
   double behind = 0, ahead = 0;
   for (int k = 0; k < n; ++k) {
     const double s = -run.solid(g.element(0, 0, k)).stress[0].zz / sigma;
@@ -138,9 +142,10 @@ TEST_CASE("V07: a wave meets another material") {
     for (int j = 0; j < 2; ++j)
       for (int i = 0; i < 2; ++i) g.ids.push_back(deck.node(Vec3d(i, j, k)));
   for (int k = 0; k < 2 * n; ++k)
-    g.elements.push_back(deck.solid(
-        k < n ? 1 : 2, {g.at(0, 0, k), g.at(1, 0, k), g.at(1, 1, k), g.at(0, 1, k), g.at(0, 0, k + 1),
-                        g.at(1, 0, k + 1), g.at(1, 1, k + 1), g.at(0, 1, k + 1)}));
+    g.elements.push_back(
+        deck.solid(k < n ? 1 : 2,
+                   {g.at(0, 0, k), g.at(1, 0, k), g.at(1, 1, k), g.at(0, 1, k), g.at(0, 0, k + 1),
+                    g.at(1, 0, k + 1), g.at(1, 1, k + 1), g.at(0, 1, k + 1)}));
   deck.node_set(1, layer(g, 0));
   deck.curve(1, {{0, 1}, {1, 1}});
   deck.key("LOAD_NODE_SET").card(1, 3, 1, s / 4);
@@ -148,7 +153,8 @@ TEST_CASE("V07: a wave meets another material") {
   const double c2 = std::sqrt(young2 / rho2), z1 = rho * speed, z2 = rho2 * c2;
   run.until(1.8 * n / speed);
   // the reflected wave has come back to element 20, the transmitted one has gone 0.8 n c2/c
-  const double reflected = -mean_stress(run, g, 35, 95), transmitted = -mean_stress(run, g, 105, 165);
+  const double reflected = -mean_stress(run, g, 35, 95),
+               transmitted = -mean_stress(run, g, 105, 165);
   report("reflected, expected, transmitted, expected",
          {reflected / s - 1, (z2 - z1) / (z1 + z2), transmitted / s, 2 * z2 / (z1 + z2)});
   CHECK(reflected / s - 1 == doctest::Approx((z2 - z1) / (z1 + z2)).epsilon(0.01));
@@ -199,8 +205,9 @@ TEST_CASE("V10: mass scaling adds what the time step asks for") {
   deck.key("MAT_ELASTIC").card(1, rho, young, 0.0);
   deck.part(1, 1, 1).no_bulk_viscosity();
   deck.key("CONTROL_TIMESTEP").card(0, 0.9, 0, 0, -wanted);
-  bricks(deck, 1, 1, 10, [](int i, int j, int k) { return Vec3d(i, j, k <= 5 ? k : k - 0.9); },
-         [](int, int, int) { return 0; }, 1);
+  bricks(
+      deck, 1, 1, 10, [](int i, int j, int k) { return Vec3d(i, j, k <= 5 ? k : k - 0.9); },
+      [](int, int, int) { return 0; }, 1);
   Run run(deck);
   const double added = rho * 0.1 * (std::pow(wanted / (0.1 / speed), 2) - 1);
   report("added mass / expected - 1", {run.simulation->added_mass() / added - 1});

@@ -35,8 +35,8 @@ struct TriangleSurface {
   std::vector<std::array<int, 3>> triangles;  // outward normal, closed
 };
 
-// The point of triangle abc that is nearest to p, by the Voronoi regions of its corners, edges and face (Ericson,
-// Real-Time Collision Detection, 2005, 5.1.5).
+// The point of triangle abc that is nearest to p, by the Voronoi regions of its corners, edges and
+// face (Ericson, Real-Time Collision Detection, 2005, 5.1.5).
 Point closest_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c);
 
 class DistanceField {

@@ -385,7 +385,8 @@ void draw(const PictureOptions& o) {
   // legend only when its entries can be told apart
   const auto entries =
       by_part ? legend_entries(snapshots, panels) : decltype(legend_entries(snapshots, panels)){};
-  const bool legend = by_part && o.palette.empty() && entries.size() > 1 && entries.size() <= most_legend_entries;
+  const bool legend =
+      by_part && o.palette.empty() && entries.size() > 1 && entries.size() <= most_legend_entries;
   double strip = by_part ? 0 : 120;
   if (legend)
     for (const auto& [name, color] : entries)

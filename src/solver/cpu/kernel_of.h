@@ -1,7 +1,8 @@
 #pragma once
-// KernelOf<E, M>: the CPU driver of one element and one law. A tile is a loop over blocks of one cache line per
-// state field; a block is one pack or two, and its corner forces are added half block by half block, corner by
-// corner, lane by lane, so that the sums have the same bits for every lane width.
+// KernelOf<E, M>: the CPU driver of one element and one law. A tile is a loop over blocks of one
+// cache line per state field; a block is one pack or two, and its corner forces are added half
+// block by half block, corner by corner, lane by lane, so that the sums have the same bits for
+// every lane width.
 #include "solver/cpu/gather.h"
 
 namespace fabrica {
@@ -20,7 +21,9 @@ class KernelOf : public Kernel {
   int corners() const override { return N; }
   bool rotations() const override { return E::rotations; }
   bool can_fail() const override { return M::can_fail; }
-  int state_fields(const ElementParameters& p) const override { return E::template state_fields<M>(p); }
+  int state_fields(const ElementParameters& p) const override {
+    return E::template state_fields<M>(p);
+  }
   Elastic elastic() const override { return material_.elastic(); }
 
   void initialise(const ElementParameters& p, TileView& t) const override {
@@ -48,13 +51,16 @@ class KernelOf : public Kernel {
         CornerForces<L, N> out;
         Totals<L> totals;
         call(p, dt_previous, t, b, k, c, s, out, totals);
-        if (b == blocks - 1 && t.count % block_size != 0) drop_padding(t.count - b * block_size - k * W, out, totals);
-        internal[k] += totals.internal, hourglass[k] += totals.hourglass, damping[k] += totals.damping;
+        if (b == blocks - 1 && t.count % block_size != 0)
+          drop_padding(t.count - b * block_size - k * W, out, totals);
+        internal[k] += totals.internal, hourglass[k] += totals.hourglass,
+            damping[k] += totals.damping;
         if constexpr (M::can_fail)
           totals.time_step = select(totals.alive > L(0.0), totals.time_step, L(1e30)),
           totals.volume = select(totals.alive > L(0.0), totals.volume, L(1e30));
         step[k] = min(step[k], totals.time_step), volume[k] = min(volume[k], totals.volume);
-        if (t.element_time_step) totals.time_step.store(t.element_time_step + b * block_size + k * W);
+        if (t.element_time_step)
+          totals.time_step.store(t.element_time_step + b * block_size + k * W);
         if (t.element_alive) totals.alive.store(t.element_alive + b * block_size + k * W);
         for (int a = 0; a < N; ++a) {
           transpose_rows(out.f[a], force_rows[a] + 4 * W * k);
@@ -62,14 +68,15 @@ class KernelOf : public Kernel {
         }
       }
       scatter<N>(t.connectivity + std::size_t(b) * N * block_size, force_rows, t.force);
-      if constexpr (E::rotations) scatter<N>(t.connectivity + std::size_t(b) * N * block_size, moment_rows, t.moment);
+      if constexpr (E::rotations)
+        scatter<N>(t.connectivity + std::size_t(b) * N * block_size, moment_rows, t.moment);
     }
     t.internal = sum(internal), t.hourglass = sum(hourglass), t.damping = sum(damping);
     t.time_step = least(step), t.smallest_volume = least(volume);
   }
 
-  void lump(const ElementParameters& p, const Vec3d* x, const double* thickness, const Vec3d& orientation, double* mass,
-            double* inertia) const override {
+  void lump(const ElementParameters& p, const Vec3d* x, const double* thickness,
+            const Vec3d& orientation, double* mass, double* inertia) const override {
     Corners<double, N> c{};
     Given<double> g{};
     for (int a = 0; a < N; ++a) c.x[a] = x[a];
@@ -80,13 +87,15 @@ class KernelOf : public Kernel {
     for (int a = 0; a < N; ++a) mass[a] = m[a], inertia[a] = j[a];
   }
 
-  void read(const ElementParameters& p, const Real* block, int lane, const Vec3d* x, ElementReadout& out) const override;
+  void read(const ElementParameters& p, const Real* block, int lane, const Vec3d* x,
+            ElementReadout& out) const override;
 
  protected:
   M material_;
 
-  virtual void call(const ElementParameters& p, Real dt_previous, const TileView&, int, int, const Corners<L, N>& c,
-                    const StateView<L>& s, CornerForces<L, N>& out, Totals<L>& totals) const {
+  virtual void call(const ElementParameters& p, Real dt_previous, const TileView&, int, int,
+                    const Corners<L, N>& c, const StateView<L>& s, CornerForces<L, N>& out,
+                    Totals<L>& totals) const {
     E::template forces<L, M>(material_, p, dt_previous, c, s, out, totals);
   }
 
@@ -105,8 +114,10 @@ class KernelOf : public Kernel {
     for (int i = 0; i < W; ++i) {
       int e = b * block_size + k * W + i;
       e = e < t.count ? e : t.count - 1;
-      for (int a = 0; a < 4; ++a) set(g.thickness[a], i, t.thickness ? Real(t.thickness[4 * e + a]) : Real(0));
-      for (int a = 0; a < 3; ++a) set(g.orientation[a], i, t.orientation ? Real(t.orientation[e][a]) : Real(0));
+      for (int a = 0; a < 4; ++a)
+        set(g.thickness[a], i, t.thickness ? Real(t.thickness[4 * e + a]) : Real(0));
+      for (int a = 0; a < 3; ++a)
+        set(g.orientation[a], i, t.orientation ? Real(t.orientation[e][a]) : Real(0));
     }
     return g;
   }
@@ -127,7 +138,8 @@ class KernelOf : public Kernel {
   }
 
   template <int C>
-  static void scatter(const std::uint16_t* connectivity, const Real (*rows)[block_size * 4], ForceRecord* sum) {
+  static void scatter(const std::uint16_t* connectivity, const Real (*rows)[block_size * 4],
+                      ForceRecord* sum) {
     for (int half = 0; half < 2; ++half)
       for (int a = 0; a < C; ++a) {
         const std::uint16_t* index = connectivity + a * block_size + half * half_block;

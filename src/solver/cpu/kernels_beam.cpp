@@ -19,20 +19,26 @@ void KernelOf<E, M>::read(const ElementParameters& p, const Real* block, int lan
   }
 }
 
-std::unique_ptr<Kernel> make_beam_kernel(ElementKind kind, const Material& material, const Parameters& parameters) {
-  return make_for_law<in_beams>("beams", material, parameters, nullptr, [&](auto law) -> std::unique_ptr<Kernel> {
-    using M = decltype(law);
-    switch (kind) {
-      case ElementKind::truss: return std::make_unique<KernelOf<Truss, M>>(law);
-      case ElementKind::beam_hughes_liu: return std::make_unique<KernelOf<BeamHughesLiu, M>>(law);
-      case ElementKind::beam_resultant:
-        if constexpr (M::keyword == std::string_view("MAT_ELASTIC"))
-          return std::make_unique<KernelOf<BeamSchwer, M>>(law);
-        else
-          throw std::invalid_argument("beam formulation 2 takes *MAT_ELASTIC only; use formulation 1");
-      default: throw std::invalid_argument("this beam formulation is not available");
-    }
-  });
+std::unique_ptr<Kernel> make_beam_kernel(ElementKind kind, const Material& material,
+                                         const Parameters& parameters) {
+  return make_for_law<in_beams>(
+      "beams", material, parameters, nullptr, [&](auto law) -> std::unique_ptr<Kernel> {
+        using M = decltype(law);
+        switch (kind) {
+          case ElementKind::truss:
+            return std::make_unique<KernelOf<Truss, M>>(law);
+          case ElementKind::beam_hughes_liu:
+            return std::make_unique<KernelOf<BeamHughesLiu, M>>(law);
+          case ElementKind::beam_resultant:
+            if constexpr (M::keyword == std::string_view("MAT_ELASTIC"))
+              return std::make_unique<KernelOf<BeamSchwer, M>>(law);
+            else
+              throw std::invalid_argument(
+                  "beam formulation 2 takes *MAT_ELASTIC only; use formulation 1");
+          default:
+            throw std::invalid_argument("this beam formulation is not available");
+        }
+      });
 }
 
 }  // namespace fabrica

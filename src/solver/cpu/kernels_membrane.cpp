@@ -17,16 +17,20 @@ void KernelOf<E, M>::read(const ElementParameters&, const Real* block, int lane,
   else
     at.block += E::point_field * block_size;
   out.thickness = double(s.load(E::thickness_field));
-  put_layer<M>(shell_turn<E>(x), 0, MembranePoint<M>::stress(at), MembranePoint<M>::plastic_strain(at), out);
+  put_layer<M>(shell_turn<E>(x), 0, MembranePoint<M>::stress(at),
+               MembranePoint<M>::plastic_strain(at), out);
   if constexpr (M::can_fail) out.alive = double(at.load(MembranePoint<M>::alive));
 }
 
-std::unique_ptr<Kernel> make_membrane_kernel(ElementKind kind, const Material& material, const Parameters& parameters) {
-  return make_for_law<in_shells>("membranes", material, parameters, nullptr, [&](auto law) -> std::unique_ptr<Kernel> {
-    using M = decltype(law);
-    if (kind == ElementKind::membrane) return std::make_unique<KernelOf<Membrane, M>>(law);
-    return std::make_unique<KernelOf<MembraneFull, M>>(law);
-  });
+std::unique_ptr<Kernel> make_membrane_kernel(ElementKind kind, const Material& material,
+                                             const Parameters& parameters) {
+  return make_for_law<in_shells>("membranes", material, parameters, nullptr,
+                                 [&](auto law) -> std::unique_ptr<Kernel> {
+                                   using M = decltype(law);
+                                   if (kind == ElementKind::membrane)
+                                     return std::make_unique<KernelOf<Membrane, M>>(law);
+                                   return std::make_unique<KernelOf<MembraneFull, M>>(law);
+                                 });
 }
 
 }  // namespace fabrica

@@ -1,5 +1,6 @@
 #pragma once
-// What the shell kernels' instantiations share: reading stress, thickness and resultants for output.
+// What the shell kernels' instantiations share: reading stress, thickness and resultants for
+// output.
 #include "element/shell.h"
 #include "solver/cpu/kernel_of.h"
 #include "solver/cpu/make.h"
@@ -17,8 +18,10 @@ StateView<Real> shown_layers(const ElementParameters& p, StateView<Real> s) {
 
 // life, and rotation of local stress into global axes
 template <class M>
-void put_layer(const Mat3d& turn, int q, const Sym3<Real>& t, Real plastic_strain, ElementReadout& out) {
-  const Sym3<double> local{double(t.xx), double(t.yy), double(t.zz), double(t.xy), double(t.yz), double(t.zx)};
+void put_layer(const Mat3d& turn, int q, const Sym3<Real>& t, Real plastic_strain,
+               ElementReadout& out) {
+  const Sym3<double> local{double(t.xx), double(t.yy), double(t.zz),
+                           double(t.xy), double(t.yz), double(t.zx)};
   out.stress[q] = rotate(turn, local);
   out.plastic_strain[q] = double(plastic_strain);
 }
@@ -31,7 +34,8 @@ Mat3d shell_turn(const Vec3d* x) {
 }
 
 template <class E, class M>
-void read_shell(const ElementParameters& p, const Real* block, int lane, const Vec3d* x, ElementReadout& out) {
+void read_shell(const ElementParameters& p, const Real* block, int lane, const Vec3d* x,
+                ElementReadout& out) {
   const StateView<Real> s{const_cast<Real*>(block) + lane};
   const StateView<Real> l = shown_layers<E, M>(p, s);
   const Mat3d turn = shell_turn<E>(x);
@@ -39,9 +43,11 @@ void read_shell(const ElementParameters& p, const Real* block, int lane, const V
   out.thickness = double(s.load(E::thickness_field));
   out.alive = M::can_fail ? 0 : 1;
   for (int q = 0; q < p.layers; ++q) {
-    put_layer<M>(turn, q, ShellLayers<M>::template stress<Real>(l, q), ShellLayers<M>::plastic_strain(l, q), out);
+    put_layer<M>(turn, q, ShellLayers<M>::template stress<Real>(l, q),
+                 ShellLayers<M>::plastic_strain(l, q), out);
     if constexpr (M::can_fail)
-      out.alive = std::max(out.alive, double(l.load(q * ShellLayers<M>::stride + ShellLayers<M>::alive)));
+      out.alive =
+          std::max(out.alive, double(l.load(q * ShellLayers<M>::stride + ShellLayers<M>::alive)));
   }
   ShellLayers<M>::resultants(p, Real(out.thickness), l, out.resultants);
 }

@@ -25,16 +25,19 @@ void read_solid_point(StateView<Real> s, ElementReadout& out) {
   using P = SolidPoint<M>;
   const auto stress = s.template get<Sym3<Real>>(P::stress);
   for (int i = 0; i < 6; ++i) out.stress[0][i] = double(stress[i]);
-  out.plastic_strain[0] = plastic_strain_of(s.template get<typename M::template State<Real>>(P::material));
+  out.plastic_strain[0] =
+      plastic_strain_of(s.template get<typename M::template State<Real>>(P::material));
   if constexpr (M::can_fail) out.alive = double(s.load(P::alive));
 }
 
 // Calls make(law) for the law of a material card that may be used in Family.
 template <unsigned Family, class Make>
 std::unique_ptr<Kernel> make_for_law(const char* family_name, const Material& material,
-                                     const Parameters& parameters, const Parameters* eos, Make make) {
+                                     const Parameters& parameters, const Parameters* eos,
+                                     Make make) {
   std::unique_ptr<Kernel> kernel;
-  if (with_material<Family>(material.law, parameters, eos, [&](auto law) { kernel = make(law); })) return kernel;
+  if (with_material<Family>(material.law, parameters, eos, [&](auto law) { kernel = make(law); }))
+    return kernel;
   if (material_index(material.law, parameters) < 0)
     throw std::invalid_argument("material *" + material.law + " has no law in this program");
   throw std::invalid_argument("material *" + material.law + " cannot be used in " + family_name);

@@ -1,6 +1,6 @@
 #pragma once
-// Driver of the nodal-pressure tetrahedron (ELFORM 13): see element/tet4.h. Two passes: rates to the nodes, then
-// forces with the mean of the four nodal pressures.
+// Driver of the nodal-pressure tetrahedron (ELFORM 13): see element/tet4.h. Two passes: rates to
+// the nodes, then forces with the mean of the four nodal pressures.
 #include "element/tet4.h"
 #include "solver/cpu/kernel_of.h"
 
@@ -37,8 +37,9 @@ class NodalTet : public KernelOf<Tet4, M> {
   }
 
  protected:
-  void call(const ElementParameters& p, Real dt_previous, const TileView& t, int b, int k, const Corners<L, 4>& c,
-            const StateView<L>& s, CornerForces<L, 4>& out, Totals<L>& totals) const override {
+  void call(const ElementParameters& p, Real dt_previous, const TileView& t, int b, int k,
+            const Corners<L, 4>& c, const StateView<L>& s, CornerForces<L, 4>& out,
+            Totals<L>& totals) const override {
     const std::uint16_t* index = t.connectivity + std::size_t(b) * 4 * block_size + k * W;
     L rate = L(0.0), pressure = L(0.0);
     if (t.node_rate)
