@@ -1,6 +1,7 @@
 #include "base/team.h"
 
 #include <algorithm>
+#include <chrono>
 
 #if defined(__x86_64__)
 #include <immintrin.h>
@@ -9,21 +10,25 @@
 namespace fabrica {
 namespace {
 
+constexpr std::chrono::microseconds spin_time{30};
+
 void relax() {
 #if defined(__x86_64__)
   _mm_pause();
 #endif
 }
 
-// spins for a while, then lets other processes run
+// waits for done() without giving the core away; false when that has taken too long
 template <class Done>
-void wait_until(Done done) {
-  for (int spins = 0; !done(); ++spins) {
-    if (spins < 4000)
+bool spin(Done done) {
+  const auto give_up = std::chrono::steady_clock::now() + spin_time;
+  do {
+    for (int i = 0; i < 32; ++i) {
+      if (done()) return true;
       relax();
-    else
-      std::this_thread::yield();
-  }
+    }
+  } while (std::chrono::steady_clock::now() < give_up);
+  return done();
 }
 
 }  // namespace
@@ -34,40 +39,41 @@ Team::Team(int threads) : size_(std::max(1, threads)) {
 
 Team::~Team() {
   stop_.store(true);
-  epoch_.fetch_add(1);
-  epoch_.notify_all();
+  loop_.fetch_add(1);
+  loop_.notify_all();
   for (auto& t : threads_) t.join();
 }
 
 void Team::start(int chunks, Function function, void* data) {
-  chunks_ = chunks, function_ = function, data_ = data;
-  next_.store(0, std::memory_order_relaxed);
-  busy_.store(size_ - 1, std::memory_order_relaxed);
-  epoch_.fetch_add(1, std::memory_order_release);
-  epoch_.notify_all();
+  function_ = function, data_ = data;
+  done_.store(0, std::memory_order_relaxed);
+  ticket_.store(std::uint64_t(chunks) << 32, std::memory_order_release);
+  loop_.fetch_add(1, std::memory_order_release);
+  loop_.notify_all();
   work(0);
-  wait_until([&] { return busy_.load(std::memory_order_acquire) == 0; });
+  if (spin([&] { return done_.load(std::memory_order_acquire) == chunks; })) return;
+  for (int done; (done = done_.load(std::memory_order_acquire)) != chunks;)
+    done_.wait(done, std::memory_order_acquire);
 }
 
 void Team::work(int thread) {
   for (;;) {
-    const int chunk = next_.fetch_add(1, std::memory_order_relaxed);
-    if (chunk >= chunks_) return;
+    const std::uint64_t taken = ticket_.fetch_add(1, std::memory_order_acq_rel);
+    const int chunks = int(taken >> 32), chunk = int(taken & 0xffffffffu);
+    if (chunk >= chunks) return;
     function_(data_, chunk, thread);
+    if (done_.fetch_add(1, std::memory_order_acq_rel) + 1 == chunks) done_.notify_one();
   }
 }
 
 void Team::worker(int thread) {
-  unsigned seen = 0;
+  int seen = 0;
   for (;;) {
-    // spin first: the next loop usually starts within microseconds; sleep when it does not
-    for (int spins = 0; epoch_.load(std::memory_order_acquire) == seen && spins < 20000; ++spins)
-      relax();
-    epoch_.wait(seen, std::memory_order_acquire);
-    seen = epoch_.load(std::memory_order_acquire);
+    if (!spin([&] { return loop_.load(std::memory_order_acquire) != seen; }))
+      loop_.wait(seen, std::memory_order_acquire);
+    seen = loop_.load(std::memory_order_acquire);
     if (stop_.load()) return;
     work(thread);
-    busy_.fetch_sub(1, std::memory_order_release);
   }
 }
 

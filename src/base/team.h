@@ -3,8 +3,9 @@
 // takes which chunk never changes a result, because chunks write to their own places and sums are
 // made in chunk order.
 #include <atomic>
-#include <functional>
+#include <cstdint>
 #include <thread>
+#include <type_traits>
 #include <vector>
 
 namespace fabrica {
@@ -40,11 +41,12 @@ class Team {
 
   int size_;
   std::vector<std::thread> threads_;
-  alignas(64) std::atomic<unsigned> epoch_{0};
-  alignas(64) std::atomic<int> next_{0};
-  alignas(64) std::atomic<int> busy_{0};
+  // (chunks << 32) + the next chunk to take; one addition takes it, and may run past the last
+  alignas(64) std::atomic<std::uint64_t> ticket_{0};
+  alignas(64) std::atomic<int> done_{0};  // chunks of this loop that are finished
+  alignas(64) std::atomic<int> loop_{0};  // counts loops; workers sleep on it
   std::atomic<bool> stop_{false};
-  int chunks_ = 0;
+  // written before the ticket, read only by who holds a chunk
   Function function_ = nullptr;
   void* data_ = nullptr;
 };

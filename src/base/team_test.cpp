@@ -1,0 +1,40 @@
+#include "base/team.h"
+
+#include <doctest/doctest.h>
+
+#include <chrono>
+#include <thread>
+
+using namespace fabrica;
+
+// Every chunk of every loop runs once, for loops shorter and longer than the team, back to back and
+// after pauses in which the threads have gone to sleep.
+TEST_CASE("team: every chunk runs exactly once") {
+  for (const int threads : {1, 2, 3, 8}) {
+    Team team(threads);
+    CHECK(team.size() == threads);
+    std::vector<int> runs;
+    for (int loop = 0; loop < 2000; ++loop) {
+      const int chunks = loop % 37;
+      runs.assign(std::size_t(chunks), 0);
+      team.for_each(chunks, [&](int chunk, int thread) {
+        if (thread >= 0 && thread < threads) ++runs[std::size_t(chunk)];
+      });
+      for (const int r : runs) REQUIRE(r == 1);
+      if (loop % 200 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+}
+
+// A loop waits for the chunks that others have taken: the last one to finish is a slow one.
+TEST_CASE("team: a loop ends when its slowest chunk has ended") {
+  Team team(2);
+  for (int loop = 0; loop < 20; ++loop) {
+    std::vector<int> done(8, 0);
+    team.for_each(8, [&](int chunk, int) {
+      if (chunk == loop % 8) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      done[std::size_t(chunk)] = 1;
+    });
+    for (const int d : done) REQUIRE(d == 1);
+  }
+}
