@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -62,8 +63,14 @@ struct RigidWall {
   Vec3d edge;                         // finite plane: end of edge vector l
   double length_l = 0, length_m = 0;  // 0: infinite
   double radius = 0, length = 0;      // cylinder (0: infinite), sphere
-  double friction = 0;                // 1: stick
-  double velocity_limit = 0;          // WVEL
+  double friction = 0;                // 1: stick; 2: weld and slide, 3: weld and stick
+  double velocity_limit = 0;          // WVEL: normal speed above which nodes weld
+  struct Ortho {                      // friction along a and b = n x a
+    double fs_a = 0, fs_b = 0, fd_a = 0, fd_b = 0, decay_a = 0, decay_b = 0;
+    std::array<int, 2> node{-1, -1};  // a is the part of node 2 - node 1, or of the direction,
+    Vec3d direction{};                // in the plane
+  };
+  std::optional<Ortho> ortho;
   double offset = 0, birth = 0, death = 1e28;
   bool moving = false;
   double mass = 0, velocity = 0;  // _MOVING
@@ -122,10 +129,14 @@ struct PrescribedMotion {
   std::vector<int> nodes;
   int part = -1;
   int dof = 0;   // as in the deck
-  int kind = 0;  // VAD 0 velocity, 1 acceleration, 2 displacement
+  int kind = 0;  // VAD 0 velocity, 1 acceleration, 2 displacement, 3 velocity by displacement,
+                 // 4 displacement relative to a lead body
   int curve = -1;
   double scale = 1, birth = 0, death = 1e28;
-  Vec3d direction{};  // of VID for dof 4, 8
+  Vec3d direction{};                // of VID for dof 4, 8
+  std::array<double, 2> offset{};   // of dof 9 to 11: where the axis pierces its plane
+  int lead = -1;                    // part of the lead body, of kind 4
+  std::array<int, 2> node{-1, -1};  // direction of kind 4; none: the line of the centres
   Location where;
 };
 struct InitialVelocity {  // applied in order; later ones override

@@ -149,6 +149,7 @@ class Resolver {
   void read_joint(const Card& card);
   void read_spc(const Card& card);
   void read_prescribed_motion(const Card& card);
+  void read_motion_extras(const Card& card, PrescribedMotion& m);
 
   // loads and initial conditions
   void read_initial_velocity(const Card& card);

@@ -1,5 +1,6 @@
 // Rigid bodies, welds, joints, supports and prescribed motions.
 #include <algorithm>
+#include <cstdlib>
 
 #include "model/resolve.h"
 
@@ -151,6 +152,34 @@ void Resolver::read_spc(const Card& card) {
   list.push_back(std::move(c));
 }
 
+// The axis of rotations, the lead of relative motions, and what cannot be computed.
+void Resolver::read_motion_extras(const Card& card, PrescribedMotion& m) {
+  const bool rigid = m.target == PrescribedMotion::Target::rigid_body;
+  const int dof = std::abs(m.dof);
+  m.offset = {card.real("offset1"), card.real("offset2")};
+  if (m.kind == 4) {
+    m.lead = reference("part", card.id("lrb"));
+    m.node = {node(card.id("node1")), node(card.id("node2"))};
+    if (m.lead < 0 || !model_.parts[m.lead].rigid)
+      error(card, "lrb", "missing-lead", "the lead rigid body of the relative motion is not given",
+            "Give LRB, a rigid part");
+  }
+  const bool of_bodies = m.dof >= 1 && m.dof <= 8;
+  const bool of_nodes = of_bodies || (dof >= 9 && dof <= 11) || m.dof == -4 || m.dof == -8;
+  if (!(rigid ? of_bodies : of_nodes))
+    unsupported(card, "dof", "unsupported-motion",
+                "motion of degree of freedom " + std::to_string(m.dof) + " is not computed",
+                rigid ? "Use 1 to 8" : "Use 1 to 11, -4 or -8 to -11");
+  if (m.kind > (rigid ? 4 : dof >= 9 ? 2 : 3))
+    unsupported(card, "vad", "unsupported-motion",
+                "motion of kind VAD = " + std::to_string(m.kind) + " is not computed",
+                rigid ? "Use 0 to 4" : "Use 0 (velocity), 1 (acceleration) or 2 (displacement)");
+  if (m.kind == 3 && m.local)
+    unsupported(card, "vad", "unsupported-motion",
+                "velocity by displacement is not computed in the axes of a body",
+                "Use *BOUNDARY_PRESCRIBED_MOTION_RIGID");
+}
+
 void Resolver::read_prescribed_motion(const Card& card) {
   const std::string_view name = card.schema->name;
   PrescribedMotion m;
@@ -174,15 +203,8 @@ void Resolver::read_prescribed_motion(const Card& card) {
             "part " + std::to_string(card.id("pid")) + " is not rigid",
             "Use *BOUNDARY_PRESCRIBED_MOTION_SET for deformable parts");
   }
-  if (m.dof < 0 || m.dof > 8)
-    unsupported(card, "dof", "unsupported-motion",
-                "motion of degree of freedom " + std::to_string(m.dof) + " is not computed",
-                "Use 1 to 8");
-  if (m.kind > 2)
-    unsupported(card, "vad", "unsupported-motion",
-                "motion of kind VAD = " + std::to_string(m.kind) + " is not computed",
-                "Use 0 (velocity), 1 (acceleration) or 2 (displacement)");
-  if ((m.dof == 4 || m.dof == 8) && !(norm(m.direction) > 0))
+  read_motion_extras(card, m);
+  if (m.kind != 4 && std::abs(m.dof) % 4 == 0 && !(norm(m.direction) > 0))
     error(card, "vid", "missing-vector", "the direction of the motion is not given",
           "Give VID and *DEFINE_VECTOR");
   model_.prescribed_motions.push_back(std::move(m));

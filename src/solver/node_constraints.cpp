@@ -6,42 +6,22 @@
 #include <string>
 
 #include "load/time_curve.h"
+#include "solver/motion_target.h"
 #include "solver/stream.h"
+#include "solver/supports.h"
 
 namespace fabrica {
 
-namespace {
-
-// rows: local axes in global components, now
-Mat3d axes_now(const CoordinateSystem& s, const State& state) {
-  if (!s.moves || s.node[0] < 0 || s.node[1] < 0 || s.node[2] < 0) return s.axes;
-  const Vec3d a = state.nodes[s.node[0]].x;
-  Vec3d x = state.nodes[s.node[1]].x - a;
-  x = (1 / norm(x)) * x;
-  Vec3d z = cross(x, state.nodes[s.node[2]].x - a);
-  z = (1 / norm(z)) * z;
-  const Vec3d y = cross(z, x);
-  return {{{x.x, x.y, x.z}, {y.x, y.y, y.z}, {z.x, z.y, z.z}}};
-}
-
-}  // namespace
-
 NodeConstraints::NodeConstraints(const Model& model, const State& state, Diagnostics& diagnostics)
     : model_(model) {
-  add_supports(model);
-  add_motions(model, diagnostics);
-  int refused = 0;
-  std::erase_if(conditions_, [&](const Condition& c) {
-    const bool owned = state.owner[c.node] != NodeOwner::free;
-    if (owned) ++refused;
-    return owned || (c.rotation && state.spins.empty());
+  for_each_support(model, [&](int node, const NodeSupport& c) {
+    Condition condition;
+    static_cast<NodeSupport&>(condition) = c;
+    condition.node = node;
+    conditions_.push_back(condition);
   });
-  if (refused > 0)
-    diagnostics.warning(
-        "constraint-on-dependent-node", {}, "BOUNDARY_SPC", "NID",
-        std::to_string(refused) +
-            " conditions act on nodes of rigid bodies or tied nodes and are ignored",
-        "constrain the rigid body instead");
+  add_motions(diagnostics);
+  leave_out_dependent(state, diagnostics);
   // supports come before motions, and stay in the order of the deck within each
   std::stable_sort(conditions_.begin(), conditions_.end(),
                    [](const Condition& a, const Condition& b) {
@@ -60,76 +40,127 @@ NodeConstraints::NodeConstraints(const Model& model, const State& state, Diagnos
   }
 }
 
-void NodeConstraints::add_supports(const Model& model) {
-  static constexpr std::array<int, 8> masks{0, 1, 2, 4, 3, 6, 5, 7};  // none x y z xy yz zx xyz
-  auto unit = [](int k) {
-    Vec3d e{};
-    e[k] = 1;
-    return e;
-  };
-  for (int n = 0; n < model.nodes.size(); ++n) {
-    const int t = n < int(model.nodes.translation_code.size())
-                      ? masks[model.nodes.translation_code[n] & 7]
-                      : 0;
-    const int r =
-        n < int(model.nodes.rotation_code.size()) ? masks[model.nodes.rotation_code[n] & 7] : 0;
-    for (int k = 0; k < 3; ++k) {
-      if (t >> k & 1) conditions_.push_back({n, -1, false, unit(k), -1, 0, 1e28, 0});
-      if (r >> k & 1) conditions_.push_back({n, -1, true, unit(k), -1, 0, 1e28, 0});
-    }
-  }
-  for (const SinglePointConstraint& s : model.constraints)
-    for (int n : s.nodes)
-      for (int k = 0; k < 6; ++k) {
-        if (!s.fixed[k]) continue;
-        const bool moves = s.local_system >= 0 && model.coordinate_systems[s.local_system].moves;
-        // of a moving system the direction is kept in its components
-        const Vec3d local = unit(k % 3);
-        const Vec3d d = s.local_system < 0 || moves
-                            ? local
-                            : transpose(model.coordinate_systems[s.local_system].axes) * local;
-        conditions_.push_back({n, -1, k >= 3, d, moves ? s.local_system : -1, s.birth, s.death, 0});
-      }
+// Supports of nodes of rigid bodies are the body's business (rigid_bodies.h).
+void NodeConstraints::leave_out_dependent(const State& state, Diagnostics& diagnostics) {
+  int tied = 0, motions = 0;
+  std::erase_if(conditions_, [&](const Condition& c) {
+    const NodeOwner owner = state.owner[c.node];
+    if (owner == NodeOwner::rigid)
+      motions += c.motion >= 0;
+    else if (owner != NodeOwner::free)
+      ++tied;
+    return owner != NodeOwner::free || (c.rotation && state.spins.empty());
+  });
+  if (tied > 0)
+    diagnostics.warning("constraint-on-dependent-node", {}, "BOUNDARY_SPC", "NID",
+                        std::to_string(tied) + " conditions act on tied nodes and are ignored",
+                        "constrain what they are tied to");
+  if (motions > 0)
+    diagnostics.warning("constraint-on-dependent-node", {}, "BOUNDARY_PRESCRIBED_MOTION", "NID",
+                        std::to_string(motions) +
+                            " prescribed motions act on nodes of rigid bodies and are ignored",
+                        "use *BOUNDARY_PRESCRIBED_MOTION_RIGID");
 }
 
-void NodeConstraints::add_motions(const Model& model, Diagnostics& diagnostics) {
-  for (int i = 0; i < int(model.prescribed_motions.size()); ++i) {
-    const PrescribedMotion& m = model.prescribed_motions[i];
+void NodeConstraints::add_motions(Diagnostics& diagnostics) {
+  for (int i = 0; i < int(model_.prescribed_motions.size()); ++i) {
+    const PrescribedMotion& m = model_.prescribed_motions[i];
     if (m.target != PrescribedMotion::Target::nodes) continue;
-    if (m.dof < 1 || m.dof > 8 || m.kind < 0 || m.kind > 2 || m.curve < 0) {
+    const int dof = std::abs(m.dof), kinds = dof >= 9 ? 2 : 3;
+    const bool known = dof >= 1 && dof <= 11 && (m.dof > 0 || dof % 4 == 0 || dof >= 9);
+    if (!known || m.kind < 0 || m.kind > kinds || m.curve < 0) {
       diagnostics.error("unsupported-motion", m.where, "BOUNDARY_PRESCRIBED_MOTION", "DOF",
                         "DOF " + std::to_string(m.dof) + " with VAD " + std::to_string(m.kind) +
                             " is not supported",
-                        "use DOF 1-8 and VAD 0, 1 or 2 with a curve");
+                        "use DOF 1-11, -4, -8 to -11 and VAD 0, 1, 2, 3 (DOF 1-8) with a curve");
       continue;
     }
-    Vec3d d{};
-    if (m.dof % 4 == 0)
-      d = (1 / norm(m.direction)) * m.direction;
-    else
-      d[m.dof % 4 - 1] = 1;
-    for (int n : m.nodes) conditions_.push_back({n, i, m.dof >= 5, d, -1, m.birth, m.death, 0});
+    for (int n : m.nodes) add_motion(n, i);
   }
 }
 
-Vec3d NodeConstraints::direction_of(const Condition& c, const State& state) const {
-  if (c.system < 0) return c.direction;
-  return transpose(axes_now(model_.coordinate_systems[c.system], state)) * c.direction;
+void NodeConstraints::add_motion(int node, int motion) {
+  const PrescribedMotion& m = model_.prescribed_motions[motion];
+  const int dof = std::abs(m.dof);
+  Condition c;
+  c.node = node, c.motion = motion, c.birth = m.birth, c.death = m.death;
+  const auto add = [&](Aim aim, const Vec3d& direction) {
+    c.aim = aim, c.direction = direction;
+    conditions_.push_back(c);
+  };
+  const auto unit = [](int k) {
+    Vec3d e{};
+    e[k % 3] = 1;
+    return e;
+  };
+  if (dof >= 9) {
+    // the plane of the rotation about x, y or z
+    if (m.dof < 0) return add(Aim::ray, unit(dof - 9));
+    add(Aim::circle_a, unit(dof - 9 + 1));
+    return add(Aim::circle_b, unit(dof - 9 + 2));
+  }
+  c.rotation = dof >= 5;
+  if (dof % 4 != 0) return add(Aim::along, unit(dof % 4 - 1));
+  const Vec3d d = (1 / norm(m.direction)) * m.direction;
+  add(Aim::along, d);
+  if (m.dof > 0) return;
+  // held across the direction
+  Vec3d e = cross(d, std::abs(d.x) < 0.9 ? unit(0) : unit(1));
+  e = (1 / norm(e)) * e;
+  add(Aim::held, e);
+  add(Aim::held, cross(d, e));
 }
 
-double NodeConstraints::target_of(const Condition& c, const State& state, const Vec3d& n,
-                                  const Vec3d& before) const {
-  if (c.motion < 0) return 0;
+// Place of the node in the plane of its rotation, from the axis.
+std::array<double, 2> NodeConstraints::arm_of(const Condition& c, const Vec3d& x) const {
   const PrescribedMotion& m = model_.prescribed_motions[c.motion];
-  const Curve& curve = model_.curves[m.curve];
-  const double t = std::max(0.0, state.time - m.birth);
-  if (m.kind == 0) return m.scale * curve_integral(curve.x, curve.y, t, t + state.dt) / state.dt;
-  if (m.kind == 1) {
-    const double from = std::max(0.0, t - 0.5 * state.dt_previous);
-    return dot(n, before) + m.scale * curve_integral(curve.x, curve.y, from, t + 0.5 * state.dt);
+  const int axis = std::abs(m.dof) - 9;
+  return {x[(axis + 1) % 3] - m.offset[0], x[(axis + 2) % 3] - m.offset[1]};
+}
+
+// n and the target of n . v+. With the angle turned in the step, phi, a node on a circle ends at
+// R(phi) r. One that may leave the circle is pushed across its ray as it stands, and ends on the
+// ray through R(phi) r whatever its radial velocity.
+NodeConstraints::Goal NodeConstraints::goal_of(const Condition& c, const State& state,
+                                               const Vec3d& before) const {
+  const Vec3d n = carried_direction(model_, state, c.direction, c.system);
+  if (c.motion < 0 || c.aim == Aim::held) return {n, 0};
+  const PrescribedMotion& m = model_.prescribed_motions[c.motion];
+  const NodeMotion& node = state.nodes[c.node];
+  if (c.aim == Aim::along) {
+    const double now = c.rotation ? c.angle : dot(n, node.x - model_.nodes.x[c.node]);
+    return {n, motion_velocity(model_, m, state, now, dot(n, before))};
   }
-  const double now = c.rotation ? c.angle : dot(n, state.nodes[c.node].x - model_.nodes.x[c.node]);
-  return (m.scale * curve_value(curve.x, curve.y, t + state.dt) - now) / state.dt;
+  const auto r = arm_of(c, node.x);
+  const int axis = std::abs(m.dof) - 9;
+  const double length = std::hypot(r[0], r[1]);
+  if (!(length > 0)) return {n, 0};
+  const Vec3d& v = before;
+  const double start = r[0] * v[(axis + 2) % 3] - r[1] * v[(axis + 1) % 3];
+  const double rate = state.cycle == 0 ? start / (length * length) : c.rate;
+  const double phi = state.dt * motion_velocity(model_, m, state, c.angle, rate);
+  const double co = std::cos(phi), si = std::sin(phi);
+  const std::array<double, 2> turned{co * r[0] - si * r[1], si * r[0] + co * r[1]};
+  if (c.aim == Aim::circle_a) return {n, (turned[0] - r[0]) / state.dt};
+  if (c.aim == Aim::circle_b) return {n, (turned[1] - r[1]) / state.dt};
+  Vec3d radial{}, across{};
+  radial[(axis + 1) % 3] = across[(axis + 2) % 3] = r[0] / length;
+  radial[(axis + 2) % 3] = r[1] / length, across[(axis + 1) % 3] = -r[1] / length;
+  return {across, si / co * (length / state.dt + dot(radial, node.v))};
+}
+
+// Angles that the node has turned about its directions and axes after this step.
+void NodeConstraints::turn_on(Condition& c, const State& state) const {
+  if (c.rotation) {
+    const Vec3d n = carried_direction(model_, state, c.direction, c.system);
+    c.angle += state.dt * dot(n, state.spins[c.node].w);
+    return;
+  }
+  if (c.aim == Aim::along || c.aim == Aim::held) return;
+  const NodeMotion& node = state.nodes[c.node];
+  const auto r = arm_of(c, node.x), end = arm_of(c, node.x + state.dt * node.v);
+  const double turn = std::atan2(r[0] * end[1] - r[1] * end[0], r[0] * end[0] + r[1] * end[1]);
+  c.angle += turn, c.rate = turn / state.dt;
 }
 
 void NodeConstraints::apply_node(State& state, int entry, bool rotation) {
@@ -147,8 +178,7 @@ void NodeConstraints::apply_node(State& state, int entry, bool rotation) {
   for (int i = begin_[entry]; i < begin_[entry + 1] && known < 3; ++i) {
     const Condition& c = conditions_[i];
     if (c.rotation != rotation || !alive(c.birth, c.death, state.time, state.dt)) continue;
-    Vec3d n = direction_of(c, state);
-    double target = target_of(c, state, n, before);
+    auto [n, target] = goal_of(c, state, before);
     const Vec3d whole = n;
     for (int k = 0; k < known; ++k) {
       const double along = dot(whole, base[k]);
@@ -171,10 +201,8 @@ void NodeConstraints::apply_node(State& state, int entry, bool rotation) {
     base[known] = n, value[known] = target, ++known;
   }
   before = v;
-  if (rotation)
-    for (int i = begin_[entry]; i < begin_[entry + 1]; ++i)
-      if (conditions_[i].rotation)
-        conditions_[i].angle += state.dt * dot(direction_of(conditions_[i], state), v);
+  for (int i = begin_[entry]; i < begin_[entry + 1]; ++i)
+    if (conditions_[i].rotation == rotation) turn_on(conditions_[i], state);
 }
 
 void NodeConstraints::stop_supported(State& state) const {
@@ -187,7 +215,7 @@ void NodeConstraints::stop_supported(State& state) const {
       for (int i = begin_[e]; i < begin_[e + 1] && known < 3; ++i) {
         const Condition& c = conditions_[i];
         if (c.motion >= 0 || c.rotation != rotation || !alive(c.birth, c.death, 0, 0)) continue;
-        Vec3d n = direction_of(c, state);
+        Vec3d n = carried_direction(model_, state, c.direction, c.system);
         for (int k = 0; k < known; ++k) n -= dot(n, base[k]) * base[k];
         const double rest = norm(n);
         if (rest < 1e-6) continue;
@@ -213,7 +241,7 @@ void NodeConstraints::save(std::ostream& out) const {
   write_vector(out, reactions_);
   write_vector(out, last_v_);
   write_vector(out, last_w_);
-  for (const Condition& c : conditions_) write_value(out, c.angle);
+  for (const Condition& c : conditions_) write_value(out, c.angle), write_value(out, c.rate);
   write_value(out, pending_);
 }
 
@@ -221,7 +249,7 @@ void NodeConstraints::load(std::istream& in) {
   read_vector(in, reactions_);
   read_vector(in, last_v_);
   read_vector(in, last_w_);
-  for (Condition& c : conditions_) read_value(in, c.angle);
+  for (Condition& c : conditions_) read_value(in, c.angle), read_value(in, c.rate);
   read_value(in, pending_);
 }
 

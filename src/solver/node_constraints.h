@@ -5,6 +5,7 @@
 //   R = m (target - n . v+) / dt_v,   v+ <- v+ + (target - n . v+) n
 // is the reaction on the node; its work is booked as external work. Rotations likewise with w and
 // J.
+#include <array>
 #include <istream>
 #include <ostream>
 #include <vector>
@@ -12,12 +13,14 @@
 #include "base/diagnostics.h"
 #include "model/model.h"
 #include "model/state.h"
+#include "solver/supports.h"
 
 namespace fabrica {
 
 class NodeConstraints {
  public:
-  // Conditions on nodes that a rigid body or a tied contact owns are left out with a warning.
+  // Conditions on tied nodes and motions of nodes of rigid bodies are left out with a warning;
+  // supports of nodes of rigid bodies act on the body (rigid_bodies.h).
   NodeConstraints(const Model& model, const State& state, Diagnostics& diagnostics);
   // Takes out of initial velocities what supports forbid: such motion carries no energy at t = 0.
   void stop_supported(State& state) const;
@@ -37,20 +40,30 @@ class NodeConstraints {
   void load(std::istream& in);
 
  private:
-  struct Condition {
+  // what n . v+ of a condition is: n kept, or by the rotation about an axis (DOF 9 to 11)
+  enum class Aim {
+    along,     // a velocity along the direction, 0 for supports
+    held,      // zero across the direction of a motion
+    circle_a,  // on its circle, first and second axis of the plane
+    circle_b,
+    ray  // at an angle, at any distance from the axis
+  };
+  struct Condition : NodeSupport {
     int node = -1;
     int motion = -1;  // index into Model::prescribed_motions; -1: support
-    bool rotation = false;
-    Vec3d direction{};  // global at the start
-    int system = -1;    // moving coordinate system that carries the direction, or -1
-    double birth = 0, death = 1e28;
-    double angle = 0;  // accumulated, of rotations by displacement
+    Aim aim = Aim::along;
+    double angle = 0, rate = 0;  // turned so far, and its rate in the last step
   };
-  void add_supports(const Model& model);
-  void add_motions(const Model& model, Diagnostics& diagnostics);
-  Vec3d direction_of(const Condition& c, const State& state) const;
-  double target_of(const Condition& c, const State& state, const Vec3d& n,
-                   const Vec3d& before) const;
+  struct Goal {
+    Vec3d n;
+    double target;
+  };
+  void add_motions(Diagnostics& diagnostics);
+  void add_motion(int node, int motion);
+  void leave_out_dependent(const State& state, Diagnostics& diagnostics);
+  std::array<double, 2> arm_of(const Condition& c, const Vec3d& x) const;
+  Goal goal_of(const Condition& c, const State& state, const Vec3d& before) const;
+  void turn_on(Condition& c, const State& state) const;
   void apply_node(State& state, int entry, bool rotation);
 
   const Model& model_;

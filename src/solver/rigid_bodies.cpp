@@ -5,7 +5,6 @@
 #include <array>
 #include <numeric>
 
-#include "load/time_curve.h"
 #include "solver/joints.h"
 #include "solver/stream.h"
 
@@ -146,89 +145,6 @@ void RigidBodies::place_nodes(State& state, Team& team) {
   });
 }
 
-// Constraint codes of MAT_RIGID and NRB_SPC as conditions of zero velocity.
-void RigidBodies::code_conditions(int cmo, int con1, int con2, int local_system, const RigidBody& b,
-                                  int local, std::vector<GroundCondition>& out) const {
-  static constexpr std::array<int, 8> masks{0, 1, 2, 4, 3, 6, 5, 7};  // none x y z xy yz zx xyz
-  int translation = 0, rotation = 0;
-  Mat3d axes = identity3<double>();
-  if (cmo > 0) {
-    translation = con1 >= 0 && con1 <= 7 ? masks[con1] : 0;
-    rotation = con2 >= 0 && con2 <= 7 ? masks[con2] : 0;
-  } else if (cmo < 0) {
-    // six decimal digits: x y z rx ry rz
-    for (int k = 0, digits = con2; k < 6; ++k, digits /= 10)
-      if (digits % 10) (k < 3 ? rotation : translation) |= 1 << (2 - k % 3);
-    if (local_system >= 0) axes = model_.coordinate_systems[local_system].axes;
-  }
-  (void)b;
-  for (int k = 0; k < 3; ++k) {
-    const Vec3d e{axes(k, 0), axes(k, 1), axes(k, 2)};
-    if (translation >> k & 1) out.push_back({local, false, false, e, 0});
-    if (rotation >> k & 1) out.push_back({local, true, false, e, 0});
-  }
-}
-
-// The condition of a prescribed motion in this step; false while it is not alive.
-bool RigidBodies::motion_condition(const State& state, int index, int local,
-                                   GroundCondition& g) const {
-  const PrescribedMotion& m = model_.prescribed_motions[index];
-  if (!alive(m.birth, m.death, state.time, state.dt)) return false;
-  const RigidBody& b = bodies_[part_to_body_[m.part]];
-  const Curve& curve = model_.curves[m.curve];
-  const double t = std::max(0.0, state.time - m.birth);
-  g = {};
-  g.body = local;
-  g.rotation = m.dof >= 5;
-  const int axis = m.dof % 4;  // 1 2 3 and 5 6 7: axes; 4 and 8: along a vector
-  if (axis == 0)
-    g.direction = (1 / norm(m.direction)) * m.direction;
-  else
-    g.direction[axis - 1] = 1;
-  if (m.local) {
-    // body axes: those of the material's local system, else the principal ones
-    const int system = model_.parts[m.part].material >= 0
-                           ? model_.materials[model_.parts[m.part].material].local_system
-                           : -1;
-    if (system >= 0)
-      g.direction = transpose(matrix_of(b.start_q)) *
-                    (transpose(model_.coordinate_systems[system].axes) * g.direction);
-    g.in_body = true;
-  }
-  const Vec3d d = g.in_body ? matrix_of(b.motion.q) * g.direction : g.direction;
-  if (m.kind == 0) {
-    g.target = m.scale * curve_integral(curve.x, curve.y, t, t + state.dt) / state.dt;
-  } else if (m.kind == 1) {
-    const double from = std::max(0.0, t - 0.5 * state.dt_previous);
-    g.target = dot(d, g.rotation ? b.motion.w : b.motion.v) +
-               m.scale * curve_integral(curve.x, curve.y, from, t + 0.5 * state.dt);
-  } else {
-    const double now = g.rotation || m.local ? motion_angle_[index] : dot(d, b.displacement());
-    g.target = (m.scale * curve_value(curve.x, curve.y, t + state.dt) - now) / state.dt;
-  }
-  return true;
-}
-
-void RigidBodies::ground_conditions(const State& state, int body, int local,
-                                    std::vector<GroundCondition>& out,
-                                    std::vector<int>& motion_of) const {
-  const RigidBody& b = bodies_[body];
-  if (b.part >= 0 && model_.parts[b.part].material >= 0) {
-    const Material& m = model_.materials[model_.parts[b.part].material];
-    code_conditions(m.cmo, m.con1, m.con2, m.local_system, b, local, out);
-  } else if (b.nodal >= 0) {
-    const NodalRigidBody& m = model_.nodal_rigid_bodies[b.nodal];
-    code_conditions(m.cmo, m.con1, m.con2, m.local_system, b, local, out);
-  }
-  motion_of.resize(out.size(), -1);
-  for (int index : motions_[body]) {
-    GroundCondition g;
-    if (!motion_condition(state, index, local, g)) continue;
-    out.push_back(g);
-    motion_of.push_back(index);
-  }
-}
-
 // Bodies that joints connect are solved together.
 void RigidBodies::build_components(const Joints* joints) {
   std::vector<int> parent(size());
@@ -259,9 +175,29 @@ void RigidBodies::build_components(const Joints* joints) {
                     : material >= 0 ? model_.materials[material].cmo
                                     : 0;
     plain_.push_back(component_links_[c].empty() && cmo == 0 &&
-                     motions_[components_[c][0]].empty());
+                     motions_[components_[c][0]].empty() && supports_[components_[c][0]].empty());
   }
+  order_components();
   components_known_ = true;
+}
+
+// Leads of relative motions before those that follow them; otherwise in the order of the bodies.
+void RigidBodies::order_components() {
+  std::vector<int> component_of(size());
+  for (std::size_t c = 0; c < components_.size(); ++c)
+    for (int b : components_[c]) component_of[b] = int(c);
+  order_.clear();
+  std::vector<unsigned char> seen(components_.size(), 0);
+  const auto visit = [&](const auto& self, int c) -> void {
+    if (seen[c]) return;
+    seen[c] = 1;
+    for (int b : components_[c])
+      for (int i : motions_[b])
+        if (const PrescribedMotion& m = model_.prescribed_motions[i]; m.kind == 4)
+          self(self, component_of[part_to_body_[m.lead]]);
+    order_.push_back(c);
+  };
+  for (int c = 0; c < int(components_.size()); ++c) visit(visit, c);
 }
 
 void RigidBodies::accept(State& state, int body, const RigidTrial& trial) {
@@ -274,6 +210,7 @@ void RigidBodies::accept(State& state, int body, const RigidTrial& trial) {
   b.motion.x = trial.x, b.motion.q = trial.q;
   b.applied_force = b.force, b.applied_moment = b.moment;
   b.force = b.moment = {};
+  advanced_[body] = 1;
 }
 
 void RigidBodies::integrate(State& state, Joints* joints) {
@@ -283,7 +220,8 @@ void RigidBodies::integrate(State& state, Joints* joints) {
   state.energy.joint += pending_joint_;
   pending_external_ = pending_joint_ = 0;
   for (RigidBody& b : bodies_) b.constraint_force = b.constraint_moment = {};
-  for (std::size_t c = 0; c < components_.size(); ++c) {
+  advanced_.assign(bodies_.size(), 0);
+  for (const int c : order_) {
     if (!plain_[c]) {
       solve_component(state, components_[c], joints, component_links_[c]);
       continue;

@@ -14,6 +14,7 @@
 #include "constraint/rigid_motion.h"
 #include "model/model.h"
 #include "model/state.h"
+#include "solver/supports.h"
 
 namespace fabrica {
 
@@ -106,8 +107,14 @@ class RigidBodies {
   void build_components(const Joints* joints);
   void ground_conditions(const State& state, int body, int local, std::vector<GroundCondition>& out,
                          std::vector<int>& motion_of) const;
-  void code_conditions(int cmo, int con1, int con2, int local_system, const RigidBody& b, int local,
+  void code_conditions(int cmo, int con1, int con2, int local_system, int local,
                        std::vector<GroundCondition>& out) const;
+  void collect_supports(Diagnostics& diagnostics);
+  void support_conditions(const State& state, int body, int local,
+                          std::vector<GroundCondition>& out) const;
+  Vec3d node_after(const State& state, int node, int body) const;
+  void relative_condition(const State& state, const PrescribedMotion& m, GroundCondition& g) const;
+  void order_components();
   bool motion_condition(const State& state, int index, int local, GroundCondition& g) const;
   struct Problem;
   Problem pose(const State& state, const std::vector<int>& members, Joints* joints,
@@ -122,12 +129,15 @@ class RigidBodies {
   std::vector<RigidBody> bodies_;
   std::vector<std::vector<Seed>> seeds_;  // of each body, lead first
   std::vector<int> node_to_body_, part_to_body_;
-  std::vector<std::vector<int>> motions_;  // of each body
+  std::vector<std::vector<int>> motions_;           // of each body
+  std::vector<std::vector<NodeSupport>> supports_;  // of each body: those of its nodes
   std::vector<double> motion_angle_, motion_reaction_;
   std::vector<Chunk> chunks_;
   std::vector<Vec3d> partial_;
   std::vector<std::vector<int>> components_, component_links_;
-  std::vector<unsigned char> plain_;  // component of one body without conditions
+  std::vector<int> order_;               // of the components: leads before those that follow them
+  std::vector<unsigned char> plain_;     // component of one body without conditions
+  std::vector<unsigned char> advanced_;  // body, in this cycle
   bool components_known_ = false;
   double pending_external_ = 0, pending_joint_ = 0;  // second halves of the work of the last forces
 };

@@ -141,7 +141,8 @@ void RigidBodies::check_motions(Diagnostics& diagnostics) {
     const PrescribedMotion& m = model_.prescribed_motions[i];
     if (m.target != PrescribedMotion::Target::rigid_body) continue;
     const int b = m.part >= 0 ? part_to_body_[m.part] : -1;
-    const bool known = m.dof >= 1 && m.dof <= 8 && m.kind >= 0 && m.kind <= 2 && m.curve >= 0;
+    const int lead = m.lead >= 0 ? part_to_body_[m.lead] : -1;
+    const bool known = m.dof >= 1 && m.dof <= 8 && m.kind >= 0 && m.kind <= 4 && m.curve >= 0;
     if (b < 0)
       diagnostics.error("motion-of-deformable-part", m.where, "BOUNDARY_PRESCRIBED_MOTION_RIGID",
                         "PID", "the part is not rigid", "use *BOUNDARY_PRESCRIBED_MOTION_SET");
@@ -149,7 +150,11 @@ void RigidBodies::check_motions(Diagnostics& diagnostics) {
       diagnostics.error("unsupported-motion", m.where, "BOUNDARY_PRESCRIBED_MOTION_RIGID", "DOF",
                         "DOF " + std::to_string(m.dof) + " with VAD " + std::to_string(m.kind) +
                             " is not supported",
-                        "use DOF 1-8 and VAD 0, 1 or 2 with a curve");
+                        "use DOF 1-8 and VAD 0 to 4 with a curve");
+    else if (m.kind == 4 && (lead < 0 || lead == b))
+      diagnostics.error("motion-without-lead", m.where, "BOUNDARY_PRESCRIBED_MOTION_RIGID", "LRB",
+                        "the lead is not another rigid body",
+                        "name a part of *MAT_RIGID from whose centre the motion is measured");
     else
       motions_[b].push_back(i);
   }
@@ -260,6 +265,7 @@ void RigidBodies::finish(const State& state, Diagnostics& diagnostics) {
       set_velocity(int(b), v, w);
     }
   }
+  collect_supports(diagnostics);
   components_known_ = false;
   make_chunks();
 }
