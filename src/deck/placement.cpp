@@ -23,7 +23,8 @@ constexpr Dimension dimensions[] = {{"mass", 1, 0, 0},       {"length", 0, 1, 0}
                                     {"-", 0, 0, 0},          {"rate", 0, 0, -1},
                                     {"frequency", 0, 0, -1}};
 
-// fields that hold points (true) or directions (false), by keyword
+// fields that hold points (true) or directions (false), by keyword; "X*": all keywords that start
+// with X
 struct Geometry {
   const char* keyword;
   std::array<const char*, 3> fields;
@@ -39,12 +40,26 @@ constexpr Geometry geometry[] = {
     {"DEFINE_VECTOR", {"xh", "yh", "zh"}, true},
     {"DEFINE_SD_ORIENTATION", {"xt", "yt", "zt"}, false},
     {"PART", {"xc", "yc", "zc"}, true},
+    {"DATABASE_CROSS_SECTION_PLANE", {"xct", "yct", "zct"}, true},
+    {"DATABASE_CROSS_SECTION_PLANE", {"xch", "ych", "zch"}, true},
+    {"DATABASE_CROSS_SECTION_PLANE", {"xhev", "yhev", "zhev"}, true},
+    {"RIGIDWALL_*", {"xt", "yt", "zt"}, true},
+    {"RIGIDWALL_*", {"xh", "yh", "zh"}, true},
+    {"RIGIDWALL_*", {"xhev", "yhev", "zhev"}, true},
+    {"RIGIDWALL_*", {"vx", "vy", "vz"}, false},
+    {"RIGIDWALL_*", {"dx", "dy", "dz"}, false},
 };
+
+bool of_keyword(const Geometry& g, std::string_view keyword) {
+  const std::string_view name = g.keyword;
+  return name.ends_with('*') ? keyword.starts_with(name.substr(0, name.size() - 1))
+                             : keyword == name;
+}
 
 bool is_geometry(const Card& card, const FieldSchema& f) {
   if (card.schema->name == "DEFINE_TRANSFORMATION") return f.type == FieldType::real;
   for (const Geometry& g : geometry)
-    if (card.schema->name == g.keyword)
+    if (of_keyword(g, card.schema->name))
       for (const char* name : g.fields)
         if (f.name == name) return true;
   return false;
@@ -221,23 +236,51 @@ void convert_lengths(double factor, Card& card) {
           card.table_[std::size_t(r) * std::size_t(card.columns()) + std::size_t(c)] *= factor;
 }
 
+// Whether a rectangle, whose second edge is n x l, and radii keep their shape: turns and shifts.
+bool keeps_shapes(const Affine& map) {
+  if (map.identity) return true;
+  const Mat3d square = transpose(map.a) * map.a;
+  double error = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) error += std::abs(square(i, j) - (i == j));
+  return error < 1e-9 && det(map.a) > 0;
+}
+
+// A box stays one where every axis is mapped onto an axis.
+bool move_box(const Affine& map, Card& card) {
+  Vec3d low{card.real("xmn"), card.real("ymn"), card.real("zmn")},
+      high{card.real("xmx"), card.real("ymx"), card.real("zmx")};
+  for (int i = 0; i < 3; ++i) {
+    double largest = 0, sum = 0;
+    for (int j = 0; j < 3; ++j)
+      largest = std::max(largest, std::abs(map.a(i, j))), sum += std::abs(map.a(i, j));
+    if (sum - largest > 1e-9 * largest) return false;
+  }
+  const Vec3d a = map(low), b = map(high);
+  for (int i = 0; i < 3; ++i) low[i] = std::min(a[i], b[i]), high[i] = std::max(a[i], b[i]);
+  card.set("xmn", low.x).set("ymn", low.y).set("zmn", low.z);
+  card.set("xmx", high.x).set("ymx", high.y).set("zmx", high.z);
+  return true;
+}
+
 }  // namespace
 
 bool move_geometry(const Placement& placement, Card& card) {
   if (placement.map.identity && !placement.factors()) return true;
   const std::string& keyword = card.schema->name;
   if (keyword == "DEFINE_TRANSFORMATION") convert_lengths(placement.length, card);
-  if (starts(keyword, "RIGIDWALL_") || keyword == "DEFINE_BOX" ||
-      starts(keyword, "DATABASE_CROSS_SECTION_PLANE"))
-    return placement.map.identity;
+  if (keyword == "DEFINE_BOX") return placement.map.identity || move_box(placement.map, card);
+  const bool shaped =
+      starts(keyword, "RIGIDWALL_") || starts(keyword, "DATABASE_CROSS_SECTION_PLANE");
+  if (shaped && !keeps_shapes(placement.map)) return false;
   if (keyword == "NODE_TRANSFORM")
     return false;  // its moves are meant in the axes of the included file
   if (keyword == "PART" && !card.has_option("INERTIA")) return true;
   if (keyword == "PART") return false;  // the tensor of inertia would have to turn too
   if (keyword == "DEFINE_VECTOR" && card.real("cid") != 0) return true;
   for (const Geometry& g : geometry) {
-    if (keyword != g.keyword) continue;
     const auto [fx, fy, fz] = g.fields;
+    if (!of_keyword(g, keyword) || !card.has_field(fx)) continue;
     const Vec3d old{card.real(fx), card.real(fy), card.real(fz)};
     const Vec3d now = g.point ? placement.point(old) : placement.map.direction(old);
     card.set(fx, now.x).set(fy, now.y).set(fz, now.z);

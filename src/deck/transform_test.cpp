@@ -110,6 +110,75 @@ body.k
   CHECK(model->initial_velocities[0].velocity.x == doctest::Approx(3.0));
 }
 
+// planes, walls and boxes are points and directions too
+TEST_CASE("include transform: planes of sections, walls and boxes move with what they cut") {
+  const std::string part = body.substr(0, body.rfind("*END")) + R"(*DATABASE_CROSS_SECTION_PLANE_ID
+         5plane
+         0       1.0       0.0       0.0       2.0       0.0       0.0
+       1.0       1.0       0.0       2.0       3.0
+*RIGIDWALL_PLANAR_MOVING_ID
+         6wall
+         0         0         0       0.5
+       0.0       0.0       0.0       0.0       0.0       1.0
+       5.0       2.0
+*DEFINE_BOX
+         7       0.5       1.5       -.5       0.5       -.5       0.5
+*SECTION_BEAM
+         9         1       1.0       2.0       1.0
+       0.1       0.1       0.0       0.0
+*END
+)";
+  const auto deck = [](const std::string& moves) {
+    return head + "*DEFINE_TRANSFORMATION\n         3\n" + moves +
+           "*INCLUDE_TRANSFORM\nbody.k\n         0\n         0\n       1.0    1000.0    1000.0\n"
+           "         3\n*END\n";
+  };
+  const std::string turn =
+      "ROTATE         0.0       0.0       1.0       0.0       0.0       0.0      90.0\n";
+  const Folder folder({{"body.k", part},
+                       {"main.k", deck(turn + "TRANSL       100.0\n")},
+                       {"scaled.k", deck("SCALE          2.0       2.0       2.0\n")}});
+  Diagnostics d;
+  const auto model = read_deck(folder.path / "main.k", d);
+  REQUIRE_MESSAGE(!d.has_errors(), all_of(d));
+  int seen = 0;
+  const auto point = [](const Card& c, const char* x, const char* y, const char* z) {
+    return Vec3d{c.real(x), c.real(y), c.real(z)};
+  };
+  for (const auto& card : model->cards) {
+    const Card& c = *card;
+    if (c.schema->name == "DATABASE_CROSS_SECTION_PLANE") {
+      ++seen;
+      CHECK(norm(point(c, "xct", "yct", "zct") - Vec3d{100, 1000, 0}) < 1e-9);
+      CHECK(norm(point(c, "xch", "ych", "zch") - Vec3d{100, 2000, 0}) < 1e-9);
+      CHECK(norm(point(c, "xhev", "yhev", "zhev") - Vec3d{-900, 1000, 0}) < 1e-9);
+      CHECK(c.real("lenl") == doctest::Approx(2000));
+      CHECK(c.real("lenm") == doctest::Approx(3000));
+    } else if (c.schema->name == "DEFINE_BOX") {
+      ++seen;
+      CHECK(norm(point(c, "xmn", "ymn", "zmn") - Vec3d{-400, 500, -500}) < 1e-9);
+      CHECK(norm(point(c, "xmx", "ymx", "zmx") - Vec3d{600, 1500, 500}) < 1e-9);
+    } else if (c.schema->name == "SECTION_BEAM") {
+      ++seen;
+      CHECK(c.real("ts1") == doctest::Approx(100));
+      CHECK(c.real("qr") == 2);
+    }
+  }
+  CHECK(seen == 3);
+  REQUIRE(model->rigid_walls.size() == 1);
+  const RigidWall& w = model->rigid_walls[0];
+  CHECK(norm(w.tail - Vec3d{100, 0, 0}) < 1e-9);
+  CHECK(norm(w.head - Vec3d{100, 0, 1000}) < 1e-9);
+  CHECK(w.offset == doctest::Approx(500));
+  CHECK(w.velocity == doctest::Approx(2));  // m/s = mm/ms
+  CHECK(w.mass == doctest::Approx(5));
+
+  // what a stretch would do to rectangles is refused
+  Diagnostics scaled;
+  read_deck(folder.path / "scaled.k", scaled);
+  CHECK(count_of(scaled, Severity::error, "transform-unsupported") == 2);
+}
+
 // outer map after inner map, in whichever file each was defined
 TEST_CASE("include transform: nested placements act one after the other") {
   const std::string turn =

@@ -138,6 +138,7 @@ class Resolver {
   ContactSide contact_side(const Card& card, std::string_view id, std::string_view type,
                            std::string_view box, bool may_be_all);
   void read_wall(const Card& card);
+  void read_wall_friction(const Card& card, RigidWall& w);
   void read_wall_shape(const Card& card, RigidWall& wall);
 
   // constraints

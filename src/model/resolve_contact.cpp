@@ -175,6 +175,7 @@ void Resolver::read_wall(const Card& card) {
   if (name == "RIGIDWALL_PLANAR") {
     w.velocity_limit = card.real("wvel");
     w.offset = card.real("offset");
+    if (card.has_option("ORTHO")) read_wall_friction(card, w);
     if (card.has_option("FINITE")) {
       w.edge = {card.real("xhev"), card.real("yhev"), card.real("zhev")};
       w.length_l = card.real("lenl"), w.length_m = card.real("lenm");
@@ -190,6 +191,22 @@ void Resolver::read_wall(const Card& card) {
     error(card, "xh", "degenerate-wall", "the normal or axis of the wall has no length",
           "Give a head that differs from the tail");
   model_.rigid_walls.push_back(std::move(w));
+}
+
+void Resolver::read_wall_friction(const Card& card, RigidWall& w) {
+  RigidWall::Ortho o;
+  o.fs_a = card.real("sfrica"), o.fs_b = card.real("sfricb");
+  o.fd_a = card.real("dfrica"), o.fd_b = card.real("dfricb");
+  o.decay_a = card.real("decaya"), o.decay_b = card.real("decayb");
+  o.node = {node(card.id("node1")), node(card.id("node2"))};
+  o.direction = {card.real("dx"), card.real("dy"), card.real("dz")};
+  Vec3d d = o.direction;
+  if (o.node[0] >= 0 && o.node[1] >= 0) d = model_.nodes.x[o.node[1]] - model_.nodes.x[o.node[0]];
+  const Vec3d n = w.head - w.tail;
+  if (!(norm(cross(n, d)) > 1e-6 * norm(n) * norm(d)))
+    error(card, "dx", "degenerate-wall", "the direction of the friction does not lie in the wall",
+          "Give two nodes or a direction that is not along the normal");
+  w.ortho = o;
 }
 
 void Resolver::read_wall_shape(const Card& card, RigidWall& w) {

@@ -25,6 +25,8 @@ struct Run {
   MassDamping damping;
   double first_kinetic = 0, last_kinetic = 0;
   std::vector<Vec3d> extra;  // forces that a test adds to nodes
+  double pending_work = 0,
+         extra_work = 0;  // by them up to t(n), their half steps as energies have them
   explicit Run(Mechanism& m_)
       : m(m_),
         loads(m_.model, *m_.bodies, m_.diagnostics),
@@ -54,6 +56,12 @@ struct Run {
     m.bodies->integrate(s, m.joints.get());
     // kinetic energy at t(n): 1/2 m v- . v+
     last_kinetic = 0;
+    extra_work += pending_work;
+    pending_work = 0;
+    for (int i = 0; i < m.model.nodes.size(); ++i) {
+      extra_work += 0.5 * s.dt_previous * dot(extra[i], before[i]);
+      pending_work += 0.5 * dt * dot(extra[i], s.nodes[i].v);
+    }
     for (int i = 0; i < m.model.nodes.size(); ++i)
       if (s.owner[i] == NodeOwner::free) {
         // the half step before the start is the mirror of the one after it
@@ -219,6 +227,74 @@ TEST_CASE("a fixed wall stops a node, friction slows it, and energy is accounted
       CHECK(m.state.nodes[a].v.x == doctest::Approx(4 - 0.3 * (1 + 10 * 0.9995)).epsilon(1e-9));
     if (mu == 1) CHECK(m.state.nodes[a].v.x == 0);
   }
+}
+
+// FRIC 2 and 3: a node faster than WVEL is welded, a slower one may leave; the wall takes part
+TEST_CASE("walls weld the nodes that come fast enough") {
+  for (const double fric : {2.0, 3.0}) {
+    Mechanism m;
+    const int fast = m.node({0, 0, 0.01}), slow = m.node({5, 0, 0.01});
+    RigidWall w = plane({0, 0, 0}, {0, 0, 1});
+    w.friction = fric, w.velocity_limit = 3, w.moving = true, w.mass = 7;
+    m.model.rigid_walls.push_back(w);
+    m.start({2, 1});
+    m.state.nodes[fast].v = {1, 0, -5}, m.state.nodes[slow].v = {1, 0, -2};
+    Run run(m);
+    for (int i = 0; i < 100; ++i) run.step(1e-3);
+    run.extra[fast] = {0, 0, 4}, run.extra[slow] = {0, 0, 4};
+    for (int i = 0; i < 1000; ++i) run.step(1e-3);
+    const double wall = run.walls.velocity(0).z;
+    CHECK(m.state.nodes[fast].v.z == doctest::Approx(wall).epsilon(1e-12));
+    CHECK(m.state.nodes[slow].v.z > wall + 1);
+    // momentum: what nodes had and the forces gave, to rounding
+    const double p = 2 * m.state.nodes[fast].v.z + m.state.nodes[slow].v.z + 7 * wall;
+    CHECK(p == doctest::Approx(-12 + 8 * 1000 * 1e-3).epsilon(1e-10));
+    CHECK(m.state.nodes[fast].v.x == doctest::Approx(fric == 2 ? 1 : 0));
+    run.step(1e-3);
+    CHECK(run.last_kinetic + m.state.energy.rigid_wall - run.first_kinetic ==
+          doctest::Approx(run.extra_work).epsilon(1e-9));
+  }
+}
+
+// ORTHO: a and b of the plane brake with their own coefficients, mu = fd + (fs - fd) exp(-c |v|)
+TEST_CASE("a wall with orthotropic friction brakes along its axes") {
+  Mechanism m;
+  const int a = m.node({0, 0, 0}), b = m.node({9, 0, 0}), c = m.node({20, 0, 0});
+  RigidWall w = plane({0, 0, 0}, {0, 0, 1});
+  w.ortho = RigidWall::Ortho{0.1, 0.5, 0.1, 0.2, 0, 2, {-1, -1}, {1, 1, 3}};
+  m.model.rigid_walls.push_back(w);
+  BodyLoad g;
+  g.direction = {0, 0, 1}, g.scale = 10;
+  m.model.body_loads.push_back(g);
+  m.start({2, 1, 1});
+  const double h = std::sqrt(0.5);
+  // along a, along b, and slow along b
+  m.state.nodes[a].v = {4 * h, 4 * h, 0}, m.state.nodes[b].v = {-40 * h, 40 * h, 0};
+  m.state.nodes[c].v = {-0.1 * h, 0.1 * h, 0};
+  Run run(m);
+  run.step(1e-3);
+  const double braked = 0.1 - norm(m.state.nodes[c].v);
+  // half a step of gravity at the start, mu = 0.2 + 0.3 exp(-0.2)
+  CHECK(braked == doctest::Approx((0.2 + 0.3 * std::exp(-0.2)) * 10 * 0.5e-3).epsilon(1e-9));
+  for (int i = 0; i < 999; ++i) run.step(1e-3);
+  CHECK(norm(m.state.nodes[a].v) == doctest::Approx(4 - 0.1 * 10 * 0.9995).epsilon(1e-9));
+  CHECK(norm(m.state.nodes[b].v) == doctest::Approx(40 - 0.2 * 10 * 0.9995).epsilon(1e-9));
+  CHECK(norm(m.state.nodes[c].v) == 0);
+}
+
+TEST_CASE("a plane with an offset holds only what is near it at the start") {
+  Mechanism m;
+  const int near = m.node({0, 0, 0.5}), behind = m.node({1, 0, -0.5}), far = m.node({2, 0, 1.5});
+  RigidWall w = plane({0, 0, 0}, {0, 0, 1});
+  w.offset = 1;
+  m.model.rigid_walls.push_back(w);
+  m.start();
+  for (NodeMotion& n : m.state.nodes) n.v = {0, 0, -1};
+  Run run(m);
+  for (int i = 0; i < 3000; ++i) run.step(1e-3);
+  CHECK(m.state.nodes[near].x.z >= 0);
+  CHECK(m.state.nodes[behind].x.z == doctest::Approx(-0.5));
+  CHECK(m.state.nodes[far].x.z == doctest::Approx(-1.5));
 }
 
 TEST_CASE("finite, round and driven walls act where they are") {

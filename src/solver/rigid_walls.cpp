@@ -48,7 +48,11 @@ RigidWalls::RigidWalls(const Model& model, const State& state, Diagnostics& diag
     Wall wall;
     wall.index = i;
     wall.geometry = geometry_of(w);
+    set_friction_axes(w, wall);
+    // with OFFSET only the nodes that are near the plane at the start
     auto add = [&](int n) {
+      const double distance = dot(state.nodes[n].x - wall.geometry.origin, wall.geometry.normal);
+      if (w.offset > 0 && std::abs(distance) > w.offset) return;
       (state.owner[n] == NodeOwner::rigid ? wall.rigid : wall.free).nodes.push_back(n);
     };
     if (w.all_nodes && w.nodes.empty())
@@ -62,11 +66,55 @@ RigidWalls::RigidWalls(const Model& model, const State& state, Diagnostics& diag
     wall.free.clearance.assign(chunk_count(int(wall.free.nodes.size())), 0);
     wall.rigid.clearance.assign(chunk_count(int(wall.rigid.nodes.size())), 0);
     wall.last.assign(wall.rigid.nodes.size(), {});
+    if (w.friction == 2 || w.friction == 3) wall.welded.assign(wall.free.nodes.size(), 0);
     most = std::max({most, wall.free.clearance.size(), wall.rigid.clearance.size()});
     walls_.push_back(std::move(wall));
   }
   hits_.resize(most);
   sums_.resize(most);
+}
+
+// The axes a and b = n x a of orthotropic friction, in the plane of the wall.
+void RigidWalls::set_friction_axes(const RigidWall& w, Wall& wall) const {
+  if (!w.ortho) return;
+  Vec3d d = w.ortho->direction;
+  const auto& ends = w.ortho->node;
+  if (ends[0] >= 0 && ends[1] >= 0) d = model_.nodes.x[ends[1]] - model_.nodes.x[ends[0]];
+  wall.axis_b = unit(cross(wall.geometry.normal, d));
+  wall.axis_a = cross(wall.axis_b, wall.geometry.normal);
+}
+
+// What friction takes from the sliding velocity of a node that the wall changed by dvn along its
+// normal.
+Vec3d RigidWalls::friction_cut(const Wall& wall, const Vec3d& slip, double dvn) const {
+  const RigidWall& w = model_.rigid_walls[wall.index];
+  const double size = norm(slip);
+  if (!(size > 0)) return {};
+  if (w.ortho) {
+    const RigidWall::Ortho& o = *w.ortho;
+    const auto along = [&](const Vec3d& axis, double fs, double fd, double decay) {
+      const double s = dot(slip, axis), mu = fd + (fs - fd) * std::exp(-decay * std::abs(s));
+      return std::min(1.0, mu * dvn / size) * s * axis;
+    };
+    return along(wall.axis_a, o.fs_a, o.fd_a, o.decay_a) +
+           along(wall.axis_b, o.fs_b, o.fd_b, o.decay_b);
+  }
+  if (w.friction == 2) return {};
+  return (w.friction >= 1 ? 1 : std::min(1.0, w.friction * dvn / size)) * slip;
+}
+
+// Keeps a welded node at the wall's normal velocity, or welds one that comes fast enough.
+void RigidWalls::weld(Wall& wall, const WallGeometry& g, const State& state, int i,
+                      Hit& hit) const {
+  const RigidWall& w = model_.rigid_walls[wall.index];
+  if (wall.welded[i] == 0) {
+    wall.welded[i] = -dot(state.nodes[hit.node].v - wall.velocity, hit.normal) > w.velocity_limit;
+    return;
+  }
+  const NodeMotion& a = state.nodes[hit.node];
+  hit.normal = wall_point(g, a.x).normal;
+  hit.v_before = a.v - (state.mean_dt() * a.inverse_mass) * state.force[hit.node];
+  hit.added = -dot(a.v - wall.velocity, hit.normal), hit.deep = false;
 }
 
 double RigidWalls::highest_speed(const State& state, Team& team) {
@@ -135,8 +183,12 @@ void RigidWalls::detect(Wall& wall, const WallGeometry& g, State& state, Team& t
       const int node = side.nodes[i];
       Hit hit;
       if (state.owner[node] == NodeOwner::rigid) continue;
-      if (!find(wall, g, state, node, clearance, hit) || state.owner[node] != NodeOwner::free)
+      const bool welded = !wall.welded.empty() && wall.welded[i] != 0;
+      if (welded) clearance = std::min(clearance, 0.0), hit.node = node;
+      if ((!welded && !find(wall, g, state, node, clearance, hit)) ||
+          state.owner[node] != NodeOwner::free)
         continue;
+      if (!wall.welded.empty()) weld(wall, g, state, i, hit);
       hits_[c].push_back(hit);
       sums_[c].mass += state.nodes[node].mass;
       sums_[c].momentum += state.nodes[node].mass * dot(state.nodes[node].v, g.normal);
@@ -159,11 +211,7 @@ void RigidWalls::push(Wall& wall, State& state, Team& team, double old_speed) {
       Vec3d dv = dvn * h.normal;
       const Vec3d rel = node.v - wall.velocity;
       const Vec3d slip = rel - dot(rel, h.normal) * h.normal;
-      const double size = norm(slip);
-      if (w.friction > 0 && size > 0) {
-        const double cut = w.friction >= 1 ? size : std::min(size, w.friction * std::max(dvn, 0.0));
-        dv -= (cut / size) * slip;
-      }
+      dv -= friction_cut(wall, slip, std::max(dvn, 0.0));
       node.v += dv;
       s.impulse -= node.mass * dv;
       s.before += node.mass * dot(dv, h.v_before);
@@ -210,7 +258,6 @@ void RigidWalls::apply(State& state, Team& team, double max_speed) {
 }
 
 void RigidWalls::penalty(Wall& wall, State& state, Team& team, double speed) {
-  const RigidWall& w = model_.rigid_walls[wall.index];
   const double scale =
       model_.controls.rigid_wall_penalty > 0 ? model_.controls.rigid_wall_penalty : 1;
   const double dt = state.dt > 0 ? state.dt : state.dt_previous;
@@ -236,10 +283,9 @@ void RigidWalls::penalty(Wall& wall, State& state, Team& team, double speed) {
         const double normal = -factor * node.mass * p.distance;
         f = normal * p.normal;
         const Vec3d rel = node.v - wall.velocity, slip = rel - dot(rel, p.normal) * p.normal;
-        const double size = norm(slip);
-        if (size > 0 && w.friction > 0)
-          f -= (std::min(w.friction * normal, 0.1 * node.mass * size / wall.stiffness_dt) / size) *
-               slip;
+        // sticking is a damper of a tenth of the mass per step
+        const double damper = 0.1 * node.mass / wall.stiffness_dt;
+        f -= damper * friction_cut(wall, slip, normal / damper);
         state.interaction.add(std::size_t(side.nodes[i]), f);
       }
       s.before += dot(wall.last[i] + f, node.v);
@@ -273,6 +319,7 @@ void RigidWalls::save(std::ostream& out) const {
     write_vector(out, w.free.clearance);
     write_vector(out, w.rigid.clearance);
     write_vector(out, w.last);
+    write_vector(out, w.welded);
     write_value(out, w.stiffness_dt);
     write_value(out, w.pending);
   }
@@ -284,6 +331,7 @@ void RigidWalls::load(std::istream& in) {
     read_vector(in, w.free.clearance);
     read_vector(in, w.rigid.clearance);
     read_vector(in, w.last);
+    read_vector(in, w.welded);
     read_value(in, w.stiffness_dt);
     read_value(in, w.pending);
   }

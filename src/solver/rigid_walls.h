@@ -6,6 +6,7 @@
 //   moving wall: V+ = (M V + sum m v_n) / (M + sum m)
 // Nodes of rigid bodies get a penalty force k = s 0.1 m/dt^2 (s: RWPNAL, 1 where the deck gives 0).
 // See docs/theory/rigid_walls.md.
+#include <cstdint>
 #include <istream>
 #include <ostream>
 #include <vector>
@@ -61,7 +62,9 @@ class RigidWalls {
     WallGeometry geometry;  // at the start
     Vec3d displacement{}, velocity{}, force{}, penalty{};
     Side free, rigid;
-    std::vector<Vec3d> last;  // penalty forces of the last cycle, per rigid node
+    std::vector<Vec3d> last;           // penalty forces of the last cycle, per rigid node
+    std::vector<std::uint8_t> welded;  // per free node of walls that weld (FRIC 2, 3)
+    Vec3d axis_a{}, axis_b{};          // of orthotropic friction
     double stiffness_dt = 0;
     double pending = 0;
   };
@@ -69,6 +72,9 @@ class RigidWalls {
     Vec3d impulse{};
     double mass = 0, momentum = 0, before = 0, after = 0;
   };
+  void set_friction_axes(const RigidWall& w, Wall& wall) const;
+  Vec3d friction_cut(const Wall& wall, const Vec3d& slip, double dvn) const;
+  void weld(Wall& wall, const WallGeometry& g, const State& state, int i, Hit& hit) const;
   WallGeometry now(const Wall& wall) const;
   Vec3d driven_velocity(const Wall& wall, const State& state) const;
   bool find(const Wall& wall, const WallGeometry& g, const State& state, int node,
