@@ -11,6 +11,7 @@
 #include "material/kelvin_maxwell.h"
 #include "material/low_density_foam.h"
 #include "material/mooney_rivlin.h"
+#include "material/muscle.h"
 #include "material/null.h"
 #include "material/ogden.h"
 #include "material/piecewise_linear_plasticity.h"
@@ -30,7 +31,7 @@ struct MaterialList {
 using Materials =
     MaterialList<ElasticLaw, ElasticFluid, PlasticKinematic, Viscoelastic, Null,
                  PiecewiseLinearPlasticity, MooneyRivlin, LowDensityFoam, ViscousLowDensityFoam,
-                 KelvinMaxwell, ViscousFoam, CrushableFoam, Ogden, ViscousOgden>;
+                 KelvinMaxwell, ViscousFoam, CrushableFoam, Ogden, ViscousOgden, Muscle>;
 
 // carries a law's type through a generic lambda
 template <class M>

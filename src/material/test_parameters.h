@@ -38,6 +38,10 @@ class TestParameters : public Parameters {
     return rows_[i].at(std::string(field));
   }
 
+  TestParameters& set(const std::string& field, double value) {
+    values_[field] = value;
+    return *this;
+  }
   TestParameters& set_curve(const std::string& field, const Points& points) {
     curves_[field] = own(points);
     return *this;

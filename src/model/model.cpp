@@ -20,7 +20,8 @@ double CardParameters::real(std::string_view field) const { return card_.real(fi
 bool CardParameters::given(std::string_view field) const { return card_.given(field); }
 
 CurveView CardParameters::curve(std::string_view field) const {
-  const int i = model_.curve_index(card_.id(field));
+  // a minus sign tells a curve from a constant
+  const int i = model_.curve_index(std::abs(card_.id(field)));
   return i < 0 ? CurveView{} : model_.curves[i].view();
 }
 

@@ -30,7 +30,13 @@ std::optional<Law> law_of(const Model& model, int part, Make&& make, Diagnostics
   if (p.material < 0) return {};
   const Material& m = model.materials[std::size_t(p.material)];
   if (m.card == nullptr) return {};
-  auto law = make(m.law, CardParameters(model, *m.card));
+  std::optional<Law> law;
+  try {
+    law = make(m.law, CardParameters(model, *m.card));
+  } catch (const std::invalid_argument& e) {
+    diagnostics.error("discrete-law", m.card->where, m.law, "", e.what(), "correct the card");
+    return {};
+  }
   if (!law)
     diagnostics.error("unsupported-discrete-law", m.card->where, m.law, "",
                       "part " + std::to_string(p.id) + " uses this law for discrete elements",

@@ -72,7 +72,8 @@ double DiscreteElements::spring_law_force(const State& state, Spring& s, double 
   if (too_long || too_short) s.alive = 0;
   s.stiffness = s.damping = 0;
   if (!s.alive) return 0;
-  SpringMotion m{s.elongation, rate, state.dt_previous, state.time};
+  SpringMotion m{s.elongation, rate, state.dt_previous, state.time,
+                 s.torsional ? 0.0 : s.rest + s.elongation};
   // play: the law starts only behind it
   if (s.clearance > 0) m.d = std::min(m.d + s.clearance, 0.0);
   if (s.clearance < 0) m.d = std::max(m.d + s.clearance, 0.0);

@@ -339,7 +339,7 @@ TEST_CASE("spring: axes, offset, scale, clearance and failure") {
 TEST_CASE("spring: an unsupported law is an error that names it") {
   Bench b;
   b.node({0, 0, 0}, 1), b.node({1, 0, 0}, 1);
-  b.spring(b.part("MAT_SPRING_MUSCLE", {}), 0, 1);
+  b.spring(b.part("MAT_SPRING_TRILINEAR_DEGRADING", {}), 0, 1);
   b.build();
   REQUIRE(b.diagnostics.has_errors());
   CHECK(b.diagnostics.list()[0].name == "unsupported-discrete-law");

@@ -80,6 +80,10 @@ class Deck {
     springs_ += fmt::format("{},{},{},{}\n", ++spring_count, part, a, b);
     return spring_count;
   }
+  int beam(int part, int a, int b) {
+    beams_ += fmt::format("{},{},{},{}\n", ++beam_count, part, a, b);
+    return beam_count;
+  }
   void mass(int node, double m) {
     masses_ += fmt::format("{},{},{:.17g}\n", ++mass_count, node, m);
   }
@@ -89,13 +93,15 @@ class Deck {
       if (!lines.empty()) t += std::string("*") + name + "\n" + lines;
     };
     add("NODE", nodes_), add("ELEMENT_SOLID", solids_), add("ELEMENT_SHELL", shells_);
-    add("ELEMENT_DISCRETE", springs_), add("ELEMENT_MASS", masses_);
+    add("ELEMENT_BEAM", beams_), add("ELEMENT_DISCRETE", springs_);
+    add("ELEMENT_MASS", masses_);
     return t + "*END\n";
   }
-  int node_count = 0, solid_count = 0, shell_count = 0, spring_count = 0, mass_count = 0;
+  int node_count = 0, solid_count = 0, shell_count = 0, spring_count = 0, beam_count = 0,
+      mass_count = 0;
 
  private:
-  std::string text_, nodes_, solids_, shells_, springs_, masses_;
+  std::string text_, nodes_, solids_, shells_, springs_, beams_, masses_;
 };
 
 // a grid of bricks; place(i, j, k) is a point and its *NODE constraint code

@@ -140,6 +140,52 @@ TEST_CASE("V02: a spring between masses has the period of the central difference
   CHECK(ratio == doctest::Approx(0.05 / std::asin(0.05)).epsilon(1e-8));
 }
 
+// A muscle lifts a weight of a sixth of its strength. With Hill's g(r) = (1 + r)/(1 - 4 r) it
+// shortens at r = -1/2, so v = SRM lopt / 2, approached as exp(-t/tau), tau = m SRM lopt/(F g').
+// The sums of forces are kept to q = 2^-40 of m size/dt^2, 4.8e-7 with the spring's step, and two
+// roundings move v by q/(F g')/r = 3e-5.
+// In the steady state it gives the power of the lifted weight. The truss and the spring are the
+// same muscle.
+TEST_CASE("V97: a muscle shortens under a weight at the speed of Hill's curve") {
+  const double lopt = 100, srm = 0.01, area = 200, peak = 3e-4, strength = area * peak;
+  const double weight = strength / 6, m = 0.02, v = 0.5 * srm * lopt;
+  const auto muscle = [&](bool truss) {
+    Deck deck;
+    deck.end(80).constant_step(2e-3, 9);
+    // the chord between two points holds r = -1/2 as its own point
+    std::vector<std::array<double, 2>> hill;
+    for (int i = 0; i <= 20; ++i) hill.push_back({-1 + 0.05 * i, 0.05 * i / (5 - 0.2 * i)});
+    deck.curve(1, hill).curve(2, {{0, 1}, {1e9, 1}});
+    if (truss) {
+      deck.key("SECTION_BEAM").card(1, 3).card(area);
+      deck.key("MAT_MUSCLE").card(1, 1e-6, 1.2, srm, peak, 0, 0, 0).card(1, 1, 1, -1, 1);
+    } else {
+      deck.key("SECTION_DISCRETE").card(1, 0).card(0, 0);
+      deck.key("MAT_SPRING_MUSCLE").card(1, lopt, srm * lopt, 1, 1, strength, 1, -1).card(1, 0, 0);
+    }
+    deck.part(1, 1, 1);
+    const int a = deck.node({0, 0, 0}, 7, 7), b = deck.node({120, 0, 0}, 5, 7);
+    // half of the truss, 0.01, counts at its end
+    deck.mass(a, m), deck.mass(b, truss ? m - 0.01 : m);
+    truss ? deck.beam(1, a, b) : deck.spring(1, a, b);
+    deck.key("LOAD_NODE_POINT").card(b, 1, 2, weight);
+    return deck;
+  };
+  Vec3d end[2];
+  for (const bool truss : {true, false}) {
+    Run run(muscle(truss));
+    double work = 0;
+    while (run.step()) work -= weight * run.v(2).x * run.state().dt;
+    const double kinetic = 0.5 * m * run.v(2).x * run.v(2).x;
+    const double given = truss ? run.state().energy.internal : run.state().energy.discrete;
+    report("velocity / Hill, energy given / work", {-run.v(2).x / v, -given / (work + kinetic)});
+    CHECK(-run.v(2).x == doctest::Approx(v).epsilon(truss ? 1e-6 : 3e-5));
+    CHECK(-given == doctest::Approx(work + kinetic).epsilon(1e-3));
+    end[truss] = run.x(2);
+  }
+  CHECK(end[0].x == doctest::Approx(end[1].x).epsilon(3e-5));
+}
+
 // A rigid cube of bricks, the only thing with rotations in its model, on a torsional spring to the
 // ground: T = 2 pi sqrt(I/k), I = m a^2/4 of the nodes' masses, less the (w dt)^2/24 of the scheme.
 TEST_CASE("a torsional spring turns a rigid body of bricks") {

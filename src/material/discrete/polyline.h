@@ -33,6 +33,9 @@ class Polyline {
     return at(a, slope);
   }
 
+  // value at a, held at the end values outside the points
+  double held(double a) const { return at(std::clamp(a, x_.front(), x_.back())); }
+
   // largest slope of any segment; 0 for a single point
   double steepest() const {
     double s = 0;

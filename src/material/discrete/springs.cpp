@@ -1,6 +1,8 @@
 #include "material/discrete/springs.h"
 
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 namespace fabrica {
 
@@ -166,6 +168,67 @@ SpringForce InelasticSpring::force(const SpringMotion& m, SpringState& s) const 
   }
   r.stiffness = r.force > 0 ? unloading : std::max(r.stiffness, 0.0);
   r.force *= side;
+  return r;
+}
+
+namespace {
+// the curve of a negative field; a missing one is an error
+Polyline curve_of(const Parameters& p, const char* field) {
+  if (p.real(field) >= 0) return {};
+  const CurveView c = p.curve(field);
+  if (c) return Polyline(c);
+  throw std::invalid_argument(
+      "the field " + std::string(field) + " names curve " + std::to_string(-p.integer(field)) +
+      ", which is not a *DEFINE_CURVE of the model; define it by points (functions are not "
+      "evaluated)");
+}
+}  // namespace
+
+MuscleSpring MuscleSpring::from(const Parameters& p) {
+  MuscleSpring m{};
+  m.l0 = p.given("l0") ? p.real("l0") : 1.0;
+  m.vmax = p.real("vmax"), m.sv = p.given("sv") ? p.real("sv") : 1.0;
+  m.a = p.real("a"), m.fmax = p.real("fmax"), m.lmax = p.real("lmax"), m.ksh = p.real("ksh");
+  m.exponential = p.real("fpe") == 0;
+  m.activation = curve_of(p, "a"), m.speed = curve_of(p, "sv");
+  m.length = curve_of(p, "tl"), m.velocity = curve_of(p, "tv"), m.passive = curve_of(p, "fpe");
+  if (m.l0 <= 0) throw std::invalid_argument("L0, the optimal length, is not positive");
+  if (m.velocity && m.vmax * (m.speed ? 1.0 : m.sv) <= 0)
+    throw std::invalid_argument("TV is a curve of velocity / VMAX, but VMAX SV is not positive");
+  if (m.exponential && m.lmax <= 0)
+    throw std::invalid_argument(
+        "FPE = 0 asks for the exponential passive force, but LMAX, its elongation at FMAX, is not "
+        "positive; give LMAX, or a curve in FPE, or FPE = 1 for no passive force");
+  return m;
+}
+
+// h of (9) and its slope
+double MuscleSpring::passive_part(double x, double& slope) const {
+  slope = 0;
+  if (passive) return passive.at(x, slope);
+  const double strain = (x - 1) / lmax;
+  if (!exponential || strain <= 0) return 0;
+  if (ksh <= 0) return slope = 1 / lmax, strain;
+  slope = ksh / lmax * std::exp(ksh * strain) / std::expm1(ksh);
+  return std::expm1(ksh * strain) / std::expm1(ksh);
+}
+
+SpringForce MuscleSpring::force(const SpringMotion& m, SpringState&) const {
+  const double x = m.length / l0;
+  const double now = activation ? activation.held(m.time) : a;
+  double f = 1, g = 1, f_slope = 0, g_slope = 0, h_slope = 0;
+  double fast = vmax * sv;
+  if (length) f = length.at(x, f_slope);
+  if (f < 0) f = f_slope = 0;
+  if (speed) fast = vmax * std::max(speed.held(now), 1e-6);
+  if (velocity) g = velocity.at(m.rate / fast, g_slope);
+  if (g < 0) g = g_slope = 0;
+  const double h = passive_part(x, h_slope);
+  SpringForce r;
+  r.force = fmax * (now * f * g + h);
+  r.stiffness = fmax / l0 * (now * std::fabs(f_slope) * g + std::max(h_slope, 0.0));
+  // the steepest slope, so that the step stays stable where the rate crosses a kink
+  if (velocity) r.damping = fmax * now * f * std::max(velocity.steepest(), 0.0) / fast;
   return r;
 }
 

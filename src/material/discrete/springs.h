@@ -13,6 +13,8 @@
 //   one-sided: y = LCFD(x) for x >= m, else max(0, LCFD(m) - KU (m - x))  (8)
 //                           x: elongation, or shortening if CTF = 1; m: largest x so far
 //
+//   S15 muscle              see MuscleSpring                                                 (9)
+//
 // Field names are those of the keyword manual. All values in double; no units are assumed.
 #include <array>
 #include <optional>
@@ -28,10 +30,11 @@ namespace fabrica {
 
 // what a law is asked for
 struct SpringMotion {
-  double d = 0;     // elongation or twist at t(n)
-  double rate = 0;  // its rate at t(n-1/2)
-  double dt = 0;    // step from t(n-1) to t(n)
-  double time = 0;  // t(n)
+  double d = 0;       // elongation or twist at t(n)
+  double rate = 0;    // its rate at t(n-1/2)
+  double dt = 0;      // step from t(n-1) to t(n)
+  double time = 0;    // t(n)
+  double length = 0;  // of the element at t(n); 0 for torsion
 };
 struct SpringForce {
   double force = 0;
@@ -140,8 +143,24 @@ struct InelasticSpring {
   SpringForce force(const SpringMotion& m, SpringState& s) const;
 };
 
-using SpringLaw = std::variant<ElasticSpring, ViscousDamper, ElastoplasticSpring, NonlinearSpring,
-                               NonlinearDamper, GeneralSpring, MaxwellSpring, InelasticSpring>;
+// F = FMAX (a(t) TL(x) TV(r) + h(x)),  x = length / L0,  r = rate / (VMAX SV(a))              (9)
+// h = FPE(x), or (exp(KSH (x - 1) / LMAX) - 1) / (exp(KSH) - 1) for x > 1; TL and TV are not taken
+// below 0, and the curves of time and activation are held at their ends.
+struct MuscleSpring {
+  static constexpr std::string_view keyword = "MAT_SPRING_MUSCLE";
+  double l0, vmax, sv, a, fmax, lmax, ksh;
+  bool exponential;
+  Polyline activation, speed, length, velocity, passive;
+  static MuscleSpring from(const Parameters& p);
+  SpringForce force(const SpringMotion& m, SpringState&) const;
+
+ private:
+  double passive_part(double x, double& slope) const;
+};
+
+using SpringLaw =
+    std::variant<ElasticSpring, ViscousDamper, ElastoplasticSpring, NonlinearSpring,
+                 NonlinearDamper, GeneralSpring, MaxwellSpring, InelasticSpring, MuscleSpring>;
 
 // The law of a canonical keyword ("MAT_SPRING_ELASTIC"), or nothing if it is not one of the above.
 std::optional<SpringLaw> spring_law(std::string_view keyword, const Parameters& parameters);

@@ -277,6 +277,42 @@ TEST_CASE("discrete beam 119: damping factor, damping curve and its scale") {
   CHECK(beam_work(c, general, 4, A, 2) == doctest::Approx(pi * 1.5 * w * A * A).epsilon(1e-6));
 }
 
+// F = FMAX (a TL(l / L0) TV(v / (VMAX SV)) + h): factors at points of their curves, h in closed
+// form
+TEST_CASE("springs: a muscle pulls by activation, length, velocity and passive stretch") {
+  TestCard c;
+  c.value = {{"l0", 32}, {"vmax", 0.32}, {"sv", 1},  {"a", -1},     {"fmax", 900},
+             {"tl", -2}, {"tv", -3},     {"fpe", 0}, {"lmax", 0.6}, {"ksh", 4}};
+  c.points["a"] = {{0, 10}, {0, 0.5}};
+  c.points["tl"] = {{0.5, 1, 1.5}, {0, 1, 0.4}};
+  c.points["tv"] = {{-1, -0.5, 0, 1}, {0, 0.25, 1, 1.4}};
+  const auto force = [&](double length, double rate, double time) {
+    const auto law = spring_law("MAT_SPRING_MUSCLE", c);
+    REQUIRE(law);
+    SpringState s;
+    return spring_force(*law, {0, rate, 0.1, time, length}, s);
+  };
+  const double h = std::expm1(4 * 0.5 / 0.6) / std::expm1(4.0);
+  CHECK(force(32, 0, 10).force == doctest::Approx(450));
+  CHECK(force(32, 0, 99).force == doctest::Approx(450));  // the last activation is held
+  CHECK(force(32, 0, 5).force == doctest::Approx(225));
+  CHECK(force(48, 0, 10).force == doctest::Approx(900 * (0.5 * 0.4 + h)));
+  CHECK(force(32, -0.16, 10).force == doctest::Approx(450 * 0.25));
+  CHECK(force(32, 0.32, 10).force == doctest::Approx(450 * 1.4));
+  CHECK(force(32, -0.5, 10).force == 0);  // no push
+  CHECK(force(12, 0, 10).force == 0);
+  CHECK(force(32, 0, 10).damping == doctest::Approx(450 * 1.5 / 0.32));  // steepest slope
+  // the tangent of the passive curve, by a difference
+  c.value["a"] = 0;
+  const double slope = (force(45.001, 0, 0).force - force(44.999, 0, 0).force) / 0.002;
+  CHECK(force(45, 0, 0).stiffness == doctest::Approx(slope).epsilon(1e-6));
+  c.value["sv"] = 0.5;  // half as fast
+  c.value["a"] = 1;
+  CHECK(force(32, -0.08, 0).force == doctest::Approx(900 * 0.25));
+  c.value["tl"] = -8, c.points.erase("tl");
+  CHECK_THROWS_WITH(spring_law("MAT_SPRING_MUSCLE", c), doctest::Contains("tl names curve 8"));
+}
+
 TEST_CASE("discrete beam 119: failure by separate sums and by one sum") {
   TestCard c;
   c.value = {{"utfailr", 1}, {"ucfails", 2}};

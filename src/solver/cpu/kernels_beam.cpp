@@ -28,7 +28,11 @@ std::unique_ptr<Kernel> make_beam_kernel(ElementKind kind, const Material& mater
           case ElementKind::truss:
             return std::make_unique<KernelOf<Truss, M>>(law);
           case ElementKind::beam_hughes_liu:
-            return std::make_unique<KernelOf<BeamHughesLiu, M>>(law);
+            if constexpr (requires { M::axial_only; })
+              throw std::invalid_argument("*" + std::string(M::keyword) +
+                                          " is for trusses only; use formulation 3");
+            else
+              return std::make_unique<KernelOf<BeamHughesLiu, M>>(law);
           case ElementKind::beam_resultant:
             if constexpr (M::keyword == std::string_view("MAT_ELASTIC"))
               return std::make_unique<KernelOf<BeamSchwer, M>>(law);
