@@ -59,7 +59,7 @@ struct BeamHughesLiu {
               area = L(p.area * p.section_weight[q] / weights);
       const L xx = e.axial + T * k.y - S * k.z, xy = fma(-T, k.x, shear_s),
               zx = fma(S, k.x, shear_t);
-      Sym3<L> old{at.load(0), zero, zero, at.load(1), zero, at.load(2)};
+      const Sym3<L> old{at.load(0), zero, zero, at.load(1), zero, at.load(2)};
       MaterialState state = at.template get<MaterialState>(material_field<M>);
       Point<L> point = start;
       Sym3<L> now = uniaxial(material, old, xx, xy, zx, L(p.shear_factor), point, state);
@@ -67,7 +67,7 @@ struct BeamHughesLiu {
         const L alive = min(at.load(3), point.alive);
         at.store(3, alive);
         totals.alive = max(totals.alive, alive);
-        now = alive * now, old = alive * old;
+        now = alive * now;
       }
       at.store(0, now.xx), at.store(1, now.xy), at.store(2, now.zx);
       at.put(material_field<M>, state);

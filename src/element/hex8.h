@@ -86,7 +86,7 @@ struct Hex8 {
     // viscosity, time step, energy
     const L density = L(p.density) / ratio;
     const L sound = sqrt(point.modulus / density);
-    const L q = bulk_viscosity(p, density, sound, rate, size, l);
+    const L q = point.alive * bulk_viscosity(p, density, sound, rate, size, l);
     totals.time_step = stable_step(p, sound, rate, size);
     const L mid_volume = g.volume * (L(1.0) - L(0.5) * dt * rate);
     totals.internal = mid_volume * (ddot(r.mean_stress, r.strain) - q * dt * rate);

@@ -131,7 +131,7 @@ FABRICA_FN void hexhourglass_forces(const ElementParameters& p, const Point<L>& 
       for (int a = 0; a < 4; ++a) work += dot(hg.q[a], hg.h[a]);
     } else {
       hexhourglass_stiffness(p, point, dt, g, gradient, s, hg);
-      for (int a = 0; a < 4; ++a) work += L(0.5) * dot(hg.q[a] + old[a], hg.h[a]);
+      for (int a = 0; a < 4; ++a) work += L(0.5) * dot(point.alive * hg.q[a] + old[a], hg.h[a]);
     }
   } else {
     work = hexhourglass_viscous(p, dt, density, sound, length, g, hg);

@@ -43,6 +43,7 @@ struct ElementParameters {
   Real hourglass_bending = 0, hourglass_warping = 0;  // QB, QW (shells)
   // bulk viscosity
   Real quadratic_viscosity = Real(1.5), linear_viscosity = Real(0.06);
+  int shell_viscosity = 0;  // shells: 0 none, 1 without its energy, 2 with it
   // part stiffness damping, as in the dossier: beta = coefficient * element time step; 0: none
   Real stiffness_damping = 0;
   // shells

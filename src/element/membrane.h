@@ -37,7 +37,7 @@ struct MembranePoint {
     if constexpr (M::can_fail) {
       r.alive = min(s.load(alive), point.alive);
       s.store(alive, r.alive);
-      now = r.alive * now, old = r.alive * old;
+      now = r.alive * now;
     }
     s.store(0, now.xx), s.store(1, now.yy), s.store(2, now.xy);
     s.put(material, state);
@@ -140,7 +140,7 @@ struct Membrane {
     for (int a = 0; a < 2; ++a) {
       const L rate = hv[a] - fma(g.hx, d.x[a], g.hy * d.y[a]);
       if (p.hourglass >= 4) {
-        const L old = r.alive * s.load(hourglass_field + a);
+        const L old = s.load(hourglass_field + a);
         Q[a] = r.alive * fma(stiffness * dt, rate, old);
         s.store(hourglass_field + a, Q[a]);
         energy = fma(L(0.5) * (old + Q[a]), rate, energy);

@@ -20,7 +20,7 @@
 // theory manual.
 #include <type_traits>
 
-#include "element/kernel.h"
+#include "element/solid.h"
 #include "material/plane_stress.h"
 
 namespace fabrica {
@@ -152,7 +152,6 @@ struct ShellLayers {
         s.store(alive, live);
         r.alive = max(r.alive, live);
         now = live * now;
-        old = live * old;
       }
       s.store(0, now.xx), s.store(1, now.yy), s.store(2, now.xy), s.store(3, now.yz),
           s.store(4, now.zx);
@@ -262,6 +261,22 @@ FABRICA_FN L damp_shell(const ElementParameters& p, const ShellStrain<L>& e, con
   const L membrane = nxx * e.xx + nyy * e.yy + L(2.0) * nxy * e.xy;
   const L bending = mxx * e.kxx + myy * e.kyy + L(2.0) * mxy * e.kxy;
   return membrane + bending + L(2.0) * shear * (e.zx * e.zx + e.yz * e.yz);
+}
+
+// Bulk viscosity of shells (*CONTROL_BULK_VISCOSITY, TYPE -1 and -2): the pressure q of solid.h,
+// equation (3), with D_kk = (e_xx + e_yy)/dt of the reference surface, l = sqrt(A) and the plate's
+// wave speed, on the membrane forces n_xx and n_yy; the step follows (4) there. Returns the energy
+// it takes per area, 0 where it is not to be counted.
+template <class L>
+FABRICA_FN L shell_viscosity(const ElementParameters& p, const ShellStrain<L>& e, const L& area,
+                             const L& h, const L& dt, const L& speed, L& step,
+                             ShellResultants<L>& r) {
+  const L strain = e.xx + e.yy, rate = strain / max(dt, L(1e-30));
+  const L size = step * speed;
+  const L q = (r.alive * h) * bulk_viscosity(p, L(p.density), speed, rate, size, sqrt(area));
+  r.nxx -= q, r.nyy -= q;
+  step = min(step, stable_step(p, speed, rate, size));
+  return p.shell_viscosity == 2 ? -(q * strain) : L(0.0);
 }
 
 // Initial plate and bar wave speeds.

@@ -91,12 +91,15 @@ struct ShellBTOf {
     if (p.thickness_update) h *= L(1.0) + r.thinning;
     s.store(thickness_field, h);
 
-    const L step = quad_step(p, c.x, g.area, sqrt(r.stiffening));
+    const L faster = sqrt(r.stiffening);
+    L step = quad_step(p, c.x, g.area, faster), viscous = L(0.0);
+    if (p.shell_viscosity)
+      viscous = shell_viscosity(p, e, g.area, h, dt, L(plate_speed(p)) * faster, step, r);
     totals.time_step = step;
     totals.volume = g.area * h;
     totals.alive = r.alive;
     const L mid_area = g.area * (L(1.0) - L(0.5) * (e.xx + e.yy));
-    totals.internal = mid_area * r.work;
+    totals.internal = mid_area * (r.work + viscous);
     if (p.stiffness_damping != 0)
       totals.damping = mid_area * r.alive * damp_shell(p, e, h, dt, step, r);
 
@@ -223,7 +226,7 @@ struct ShellBTOf {
     for (int k = 0; k < 5; ++k) {
       const L c = stiffness[k < 2 ? 0 : k == 2 ? 1 : 2];
       if (stiff) {
-        const L old = alive * s.load(hourglass_field + k);
+        const L old = s.load(hourglass_field + k);
         q[k] = (alive * r.kept) * fma(c * L(stiffness_share) * dt, rate[k], old);
         s.store(hourglass_field + k, q[k]);
         energy = fma(L(0.5) * (old + q[k]), rate[k], energy);

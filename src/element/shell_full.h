@@ -175,7 +175,7 @@ struct ShellFull {
                          L(p.shear), L(1.0)};
     Conjugate<L> f;
     const L initial_step = quad_step(p, c.x, area, L(1.0));
-    L thinning = L(0.0), stiffening = L(1.0);
+    L thinning = L(0.0), stiffening = L(1.0), viscous_step = L(1e30);
     totals.alive = L(0.0), totals.internal = L(0.0);
     for (int k = 0; k < 4; ++k) {
       constexpr double a = 0.5773502691896257;
@@ -184,7 +184,14 @@ struct ShellFull {
       point_strain(at, u, shear, dt, e);
       ShellResultants<L> r = ShellLayers<M>::advance(material, p, e, h, point, layers<M>(p, s, k));
       const L mid_area = at.D * (L(1.0) - L(0.5) * (e.xx + e.yy));
-      totals.internal = fma(mid_area, r.work, totals.internal);
+      L work = r.work;
+      if (p.shell_viscosity) {
+        const L faster = sqrt(r.stiffening);
+        L step = initial_step / faster;
+        work += shell_viscosity(p, e, area, h, dt, L(plate_speed(p)) * faster, step, r);
+        viscous_step = min(viscous_step, step);
+      }
+      totals.internal = fma(mid_area, work, totals.internal);
       if (p.stiffness_damping != 0)
         totals.damping += mid_area * r.alive * damp_shell(p, e, h, dt, initial_step, r);
       point_forces(at, r, f);
@@ -194,7 +201,7 @@ struct ShellFull {
     }
     if (p.thickness_update) h *= L(1.0) + thinning;
     s.store(thickness_field, h);
-    totals.time_step = initial_step / sqrt(stiffening);
+    totals.time_step = min(initial_step / sqrt(stiffening), viscous_step);
     totals.volume = area * h;
     // the centre's shear strain takes the sum of the points: transpose of (D vx,y + D vy,x)/D at
     // the centre

@@ -64,6 +64,38 @@ TEST_CASE_TEMPLATE("shells: the thickness follows the plane stress strain", E, S
   }
 }
 
+// Bulk viscosity: q = rho l r (Q1^2 l r - Q2 c) for the rate r < 0 of the area, l = sqrt(A), pushes
+// the corner at x = 1 out with A dN/dx q h = q h / 2; dt = s / (Q + sqrt(Q^2 + c^2)),
+// Q = Q2 c + Q1 s |r|. Its energy, A h q |r| dt, is counted with the option 2 alone.
+TEST_CASE_TEMPLATE("shells: bulk viscosity in compression", E, ShellBT, ShellFull, ShellTriangle) {
+  const double rate = -100, dt = 1e-6, h = 0.1;
+  auto pressed = [&](int option, double r) {
+    auto m = rectangle<E>(1, 1);
+    m.p.shell_viscosity = option;
+    m.start(h);
+    stretch(m, r, 0);
+    m.dt = dt, m.internal = 0;
+    m.forces();
+    return m;
+  };
+  const auto without = pressed(0, rate), silent = pressed(1, rate), counted = pressed(2, rate);
+  const double area = E::corners == 4 ? 1 : 0.5, size = E::corners == 4 ? 1 : std::sqrt(0.5);
+  const double c = plate_speed(without.p), l = std::sqrt(area);
+  const double q = 7.85e-6 * l * rate * (1.5 * 1.5 * l * rate - 0.06 * c);
+  CHECK(q > 0);
+  CHECK(counted.force[1].x - without.force[1].x == doctest::Approx(0.5 * q * h).epsilon(1e-3));
+  CHECK(silent.force[1].x == counted.force[1].x);
+  const double Q = 0.06 * c + 1.5 * size * -rate;
+  CHECK(without.step == doctest::Approx(size / c).epsilon(1e-5));
+  CHECK(counted.step == doctest::Approx(size / (Q + std::sqrt(Q * Q + c * c))).epsilon(1e-5));
+  CHECK(counted.internal - without.internal ==
+        doctest::Approx(area * h * q * -rate * dt).epsilon(1e-3));
+  CHECK(silent.internal == without.internal);
+  // none in tension
+  CHECK(pressed(2, -rate).force[1].x == pressed(0, -rate).force[1].x);
+  CHECK(pressed(2, -rate).step == pressed(0, -rate).step);
+}
+
 // NLOC = 1: the nodes lie on the upper surface, so that a membrane force n acts at z = -h/2: m = -n
 // h/2.
 TEST_CASE_TEMPLATE("shells: the reference surface shifts the layers", E, ShellBT, ShellFull,

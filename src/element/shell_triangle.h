@@ -68,12 +68,14 @@ struct ShellTriangle {
     if (p.thickness_update) h *= L(1.0) + r.thinning;
     s.store(thickness_field, h);
 
-    const L step = g.altitude(c.x) / (L(plate_speed(p)) * sqrt(r.stiffening));
+    const L speed = L(plate_speed(p)) * sqrt(r.stiffening);
+    L step = g.altitude(c.x) / speed, viscous = L(0.0);
+    if (p.shell_viscosity) viscous = shell_viscosity(p, e, g.area, h, dt, speed, step, r);
     totals.time_step = step;
     totals.volume = g.area * h;
     totals.alive = r.alive;
     const L mid_area = g.area * (L(1.0) - L(0.5) * (e.xx + e.yy));
-    totals.internal = mid_area * r.work;
+    totals.internal = mid_area * (r.work + viscous);
     if (p.stiffness_damping != 0)
       totals.damping = mid_area * r.alive * damp_shell(p, e, h, dt, step, r);
     corner_forces(g, r, out);

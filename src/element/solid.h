@@ -85,7 +85,6 @@ FABRICA_FN PointResult<L> advance_point(const M& material, const Mat3<L>& gradie
     point.alive = alive;
     s.store(P::alive, alive);
     r.stress = alive * r.stress;
-    old = alive * old;
   }
   r.mean_stress = L(0.5) * (old + r.stress);
   s.put(P::stress, r.stress);

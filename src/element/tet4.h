@@ -116,7 +116,7 @@ struct Tet4 {
     const L density = L(p.density) / ratio;
     const L sound = sqrt(point.modulus / density);
     const L size = g.altitude();
-    const L q = bulk_viscosity(p, density, sound, rate, size, l);
+    const L q = point.alive * bulk_viscosity(p, density, sound, rate, size, l);
     totals.time_step = stable_step(p, sound, rate, size);
     const L mid_volume = volume * (L(1.0) - L(0.5) * dt * rate);
     Sym3<L> strain = r.strain;

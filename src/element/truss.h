@@ -41,13 +41,13 @@ struct Truss {
     const L length = norm(x21), strain = dt * dot(v21, middle) / dot(middle, middle);
     Point<L> point{dt, L(1.0), length, L(p.bulk + Real(4.0 / 3.0) * p.shear), L(p.shear), L(1.0)};
     const L modulus = point.modulus;
-    Sym3<L> old{s.load(stress_field), zero, zero, zero, zero, zero};
+    const Sym3<L> old{s.load(stress_field), zero, zero, zero, zero, zero};
     MaterialState state = s.template get<MaterialState>(material_field<M>);
     Sym3<L> now = uniaxial(material, old, strain, zero, zero, L(1.0), point, state);
     if constexpr (M::can_fail) {
       totals.alive = min(s.load(alive_field<M>), point.alive);
       s.store(alive_field<M>, totals.alive);
-      now = totals.alive * now, old = totals.alive * old;
+      now = totals.alive * now;
     }
     s.store(stress_field, now.xx);
     s.put(material_field<M>, state);

@@ -31,10 +31,12 @@ struct Controls {
   double time_step_scale = 0.9;         // TSSFAC
   double initial_time_step = 0;         // DTINIT
   int shell_time_step = 0;              // ISDO
-  double mass_scaling_time_step = 0;    // DT2MS
+  int shell_viscosity = 0;  // bulk viscosity of shells: 0 none, 1 without its energy, 2 with it
+  double mass_scaling_time_step = 0;  // DT2MS
   bool mass_scaling_first_cycle_only = false;
-  bool selective_mass_scaling = false;  // IMSCL
-  int time_step_curve = -1;             // LCTM
+  bool selective_mass_all = false;        // IMSCL = 1
+  std::vector<int> selective_mass_parts;  // of the part set -IMSCL
+  int time_step_curve = -1;               // LCTM
   bool erode = false;
   Hourglass hourglass;    // *CONTROL_HOURGLASS and *CONTROL_BULK_VISCOSITY; type 0: family default
   int shell_update = 0;   // ISTUPD

@@ -170,6 +170,7 @@ class Resolver {
 
   // control and output
   void read_control(const Card& card);
+  void read_selective_mass(const Card& card);
   void read_timestep(const Card& card);
   void read_control_contact(const Card& card);
   void read_database(const Card& card);

@@ -21,6 +21,7 @@ void Resolver::read_control(const Card& card) {
   } else if (name == "CONTROL_BULK_VISCOSITY") {
     c.hourglass.quadratic_viscosity = nonzero(card, "q1", 1.5);
     c.hourglass.linear_viscosity = nonzero(card, "q2", 0.06);
+    c.shell_viscosity = std::max(0, -card.integer("type"));
   } else if (name == "CONTROL_SHELL") {
     c.shell_update = card.integer("istupd");
     c.shell_warping = to_int(nonzero(card, "bwc", 2));
@@ -43,7 +44,27 @@ void Resolver::read_timestep(const Card& card) {
   c.mass_scaling_first_cycle_only = card.integer("ms1st") == 1;
   c.time_step_curve = curve(card, "lctm");
   c.erode = card.integer("erode") != 0;
-  c.selective_mass_scaling = card.integer("imscl") != 0;
+  read_selective_mass(card);
+}
+
+// IMSCL = 1: all parts; negative: a part set
+void Resolver::read_selective_mass(const Card& card) {
+  Controls& c = model_.controls;
+  const int option = card.integer("imscl");
+  if (option == 0) return;
+  if (!(c.mass_scaling_time_step < 0))
+    error(card, "imscl", "selective-mass-without-step",
+          "selective mass scaling needs the step of mass scaling in DT2MS, as a negative number",
+          "give DT2MS < 0, or leave IMSCL out");
+  if (option > 0) {
+    c.selective_mass_all = true;
+    return;
+  }
+  if (const int set = reference("part_set", -std::int64_t(option)); set >= 0)
+    c.selective_mass_parts = model_.part_sets[set].parts;
+  else
+    error(card, "imscl", "missing-set", "there is no part set " + std::to_string(-option),
+          "define it with *SET_PART, or correct IMSCL");
 }
 
 void Resolver::read_control_contact(const Card& card) {

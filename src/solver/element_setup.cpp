@@ -167,6 +167,11 @@ ElementParameters element_parameters(const Model& model, const Part& part, const
   p.hourglass_bending = Real(h.bending), p.hourglass_warping = Real(h.warping);
   p.quadratic_viscosity = Real(h.quadratic_viscosity),
   p.linear_viscosity = Real(h.linear_viscosity);
+  // of the formulations that the keyword names for it
+  const int form = std::abs(s.formulation);
+  if (part.family == Family::shell &&
+      (form == 0 || form == 2 || form == 4 || form == 10 || form == 16 || form == 17))
+    p.shell_viscosity = control.shell_viscosity;
   for (const PartDamping& d : model.part_damping)
     if (d.stiffness != 0 &&
         std::find(d.parts.begin(), d.parts.end(), int(&part - model.parts.data())) != d.parts.end())

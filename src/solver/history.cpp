@@ -9,6 +9,7 @@ PartSums part_sums(const Simulation& s) {
   const Tiles& tiles = s.tiles();
   PartSums p;
   p.kinetic.assign(m.parts.size(), 0), p.mass.assign(m.parts.size(), 0);
+  p.eroded_kinetic.assign(m.parts.size(), 0);
   for (auto& c : p.momentum) c.assign(m.parts.size(), 0);
   for (const Tile& t : tiles.tiles) {
     const int part = tiles.classes[t.tile_class].part;
@@ -16,7 +17,8 @@ PartSums part_sums(const Simulation& s) {
       const Vec3d v = s.velocity(tiles.node[k]);
       const double mass = tiles.node_mass[k];
       p.mass[part] += mass;
-      p.kinetic[part] += 0.5 * mass * dot(v, v);
+      (s.erosion().eroded(tiles.node[k]) ? p.eroded_kinetic : p.kinetic)[part] +=
+          0.5 * mass * dot(v, v);
       for (int d = 0; d < 3; ++d) p.momentum[d][part] += mass * v[d];
     }
   }
@@ -153,7 +155,8 @@ void History::add_matsum() {
   for (const Part& p : m.parts) d->ids.push_back(p.id), d->legend.push_back(p.title);
   declare(*d, int(m.parts.size()),
           {"internal_energy", "kinetic_energy", "x_momentum", "y_momentum", "z_momentum",
-           "x_rbvelocity", "y_rbvelocity", "z_rbvelocity", "hourglass_energy", "mass"});
+           "x_rbvelocity", "y_rbvelocity", "z_rbvelocity", "hourglass_energy", "mass",
+           "eroded_internal_energy", "eroded_kinetic_energy"});
   fills_.push_back([this](std::vector<std::vector<double>>& v) {
     const PartSums p = part_sums(simulation_);
     v[0] = simulation_.part_internal();
@@ -165,6 +168,8 @@ void History::add_matsum() {
     }
     v[8] = simulation_.part_hourglass();
     v[9] = p.mass;
+    v[10] = simulation_.part_eroded_internal();
+    v[11] = p.eroded_kinetic;
   });
 }
 

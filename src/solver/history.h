@@ -14,7 +14,7 @@ namespace fabrica {
 // Kinetic energy, mass and momentum by part, at t(n): a part owns the mass that its elements give
 // to a node, a rigid part what its body has.
 struct PartSums {
-  std::vector<double> kinetic, mass, momentum[3];
+  std::vector<double> kinetic, eroded_kinetic, mass, momentum[3];
 };
 PartSums part_sums(const Simulation& simulation);
 

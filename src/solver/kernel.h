@@ -24,6 +24,12 @@ struct alignas(4 * sizeof(Real)) ForceRecord {
   Real value[4];
 };
 
+// energies of one element since the start, until it fails
+struct ElementEnergy {
+  double internal = 0, hourglass = 0;
+  bool failed = false;
+};
+
 // What one call works on. Blocks of block_size elements; the last block may be padded with copies
 // of the tile's last element whose forces are dropped.
 struct TileView {
@@ -46,6 +52,10 @@ struct TileView {
   Real smallest_volume = 0;
   Real* element_time_step = nullptr;  // [block][block_size] or null
   Real* element_alive = nullptr;      // likewise
+  // of elements that may fail: what each has taken up so far, [block][block_size], or null
+  ElementEnergy* element_energy = nullptr;
+  double eroded_internal = 0, eroded_hourglass = 0;  // of elements that fail now
+  int failed = 0;                                    // how many those are
 };
 
 // What output wants to know of one element, in global axes.

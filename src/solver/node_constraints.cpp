@@ -163,6 +163,25 @@ void NodeConstraints::turn_on(Condition& c, const State& state) const {
   c.angle += turn, c.rate = turn / state.dt;
 }
 
+int NodeConstraints::targets(const State& state, int entry, bool rotation, const Vec3d& before,
+                             std::array<Target, 3>& out) const {
+  int known = 0;
+  for (int i = begin_[entry]; i < begin_[entry + 1] && known < 3; ++i) {
+    const Condition& c = conditions_[i];
+    if (c.rotation != rotation || !alive(c.birth, c.death, state.time, state.dt)) continue;
+    auto [n, target] = goal_of(c, state, before);
+    const Vec3d whole = n;
+    for (int k = 0; k < known; ++k) {
+      const double along = dot(whole, out[k].direction);
+      n -= along * out[k].direction, target -= along * out[k].velocity;
+    }
+    const double rest = norm(n);
+    if (rest < 1e-6) continue;
+    out[known++] = {(1 / rest) * n, target / rest, c.motion < 0};
+  }
+  return known;
+}
+
 void NodeConstraints::apply_node(State& state, int entry, bool rotation) {
   Reaction& reaction = reactions_[entry];
   const int node = reaction.node;
@@ -172,25 +191,15 @@ void NodeConstraints::apply_node(State& state, int entry, bool rotation) {
   // initial velocities may have been set after this object was made
   if (state.cycle == 0)
     before = v - (state.mean_dt() / inertia) * (rotation ? state.moment : state.force)[node];
-  std::array<Vec3d, 3> base;
-  std::array<double, 3> value;
-  int known = 0;
-  for (int i = begin_[entry]; i < begin_[entry + 1] && known < 3; ++i) {
-    const Condition& c = conditions_[i];
-    if (c.rotation != rotation || !alive(c.birth, c.death, state.time, state.dt)) continue;
-    auto [n, target] = goal_of(c, state, before);
-    const Vec3d whole = n;
-    for (int k = 0; k < known; ++k) {
-      const double along = dot(whole, base[k]);
-      n -= along * base[k], target -= along * value[k];
-    }
-    const double rest = norm(n);
-    if (rest < 1e-6) continue;
-    n = (1 / rest) * n, target /= rest;
+  std::array<Target, 3> list;
+  const int known = targets(state, entry, rotation, before, list);
+  for (int i = 0; i < known; ++i) {
+    const Vec3d n = list[i].direction;
+    const double target = list[i].velocity;
     const double change = target - dot(n, v);
     const double force = inertia * change / state.mean_dt();
-    Vec3d& sum = c.motion < 0 ? (rotation ? reaction.moment : reaction.force)
-                              : (rotation ? reaction.motion_moment : reaction.motion_force);
+    Vec3d& sum = list[i].support ? (rotation ? reaction.moment : reaction.force)
+                                 : (rotation ? reaction.motion_moment : reaction.motion_force);
     sum += force * n;
     v += change * n;
     // exact along axes
@@ -198,7 +207,6 @@ void NodeConstraints::apply_node(State& state, int entry, bool rotation) {
       if (std::abs(n[k]) == 1) v[k] = n[k] * target;
     state.energy.external_work += 0.5 * state.dt_previous * force * dot(n, before);
     pending_ += 0.5 * state.dt * force * target;
-    base[known] = n, value[known] = target, ++known;
   }
   before = v;
   for (int i = begin_[entry]; i < begin_[entry + 1]; ++i)

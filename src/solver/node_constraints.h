@@ -32,6 +32,17 @@ class NodeConstraints {
     Vec3d force{}, moment{};                // of supports on the node (spcforc)
     Vec3d motion_force{}, motion_moment{};  // of prescribed motions on the node (bndout)
   };
+  // A condition that acts now: direction . v+ = velocity.
+  struct Target {
+    Vec3d direction{};
+    double velocity = 0;
+    bool support = false;
+  };
+  // The conditions of an entry on translation or rotation, directions made orthonormal; returns how
+  // many. before: velocity at t(n-1/2).
+  int targets(const State& state, int entry, bool rotation, const Vec3d& before,
+              std::array<Target, 3>& out) const;
+
   // One entry per node with conditions, by ascending node; values of the last cycle.
   const std::vector<Reaction>& reactions() const { return reactions_; }
   int size() const { return int(reactions_.size()); }

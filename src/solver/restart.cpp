@@ -9,7 +9,7 @@
 namespace fabrica {
 namespace {
 
-constexpr char magic[8] = {'F', 'A', 'B', 'R', 'S', 'T', '0', '1'};
+constexpr char magic[8] = {'F', 'A', 'B', 'R', 'S', 'T', '0', '2'};
 
 template <class T>
 void put(std::ostream& out, const T& x) {
@@ -54,6 +54,7 @@ void Simulation::save(const std::string& path) const {
     put(out, state_.energy), put(out, initial_step_), put(out, energy_started_);
     put_vector(out, state_.nodes), put_vector(out, state_.spins), put_vector(out, state_.owner);
     put_vector(out, part_internal_), put_vector(out, part_hourglass_);
+    put_vector(out, part_eroded_internal_);
     tiles_.save(out);
     mass_scaling_.save(out);
     rigid_bodies_->save(out), joints_->save(out), node_constraints_->save(out),
@@ -85,7 +86,9 @@ void Simulation::load(const std::string& path) {
   take(in, state_.energy), take(in, initial_step_), take(in, energy_started_);
   take_vector(in, state_.nodes), take_vector(in, state_.spins), take_vector(in, state_.owner);
   take_vector(in, part_internal_), take_vector(in, part_hourglass_);
+  take_vector(in, part_eroded_internal_);
   tiles_.load(in);
+  erosion_.restore(tiles_);
   mass_scaling_.load(in);
   rigid_bodies_->load(in), joints_->load(in), node_constraints_->load(in), rigid_walls_->load(in);
   loads_->load(in), damping_->load(in), discrete_->load(in), contacts_->load(in);

@@ -119,7 +119,7 @@ void RigidBodies::break_welds(State& state) {
   }
 }
 
-void RigidBodies::place_nodes(State& state, Team& team) {
+double RigidBodies::place_nodes(State& state, Team& team) {
   std::vector<Mat3d> R(bodies_.size());
   std::vector<Quaternion> turn(bodies_.size());
   for (int b = 0; b < size(); ++b) {
@@ -127,22 +127,29 @@ void RigidBodies::place_nodes(State& state, Team& team) {
     turn[b] = normalised(bodies_[b].motion.q * bodies_[b].start_q.conjugate());
   }
   const double rate = state.dt > 0 ? 1 / state.dt : 0;
+  std::vector<double> fastest(chunks_.size(), 0);
   team.for_each(int(chunks_.size()), [&](int c, int) {
     const Chunk& chunk = chunks_[c];
     const RigidBody& b = bodies_[chunk.body];
     if (!b.active) return;
+    double square = 0;
     for (int i = chunk.begin; i < chunk.end; ++i) {
       NodeMotion& node = state.nodes[b.nodes[i]];
       const Vec3d x = b.motion.x + R[chunk.body] * b.r[i];
       node.v = rate * (x - node.x);
       node.x = x;
+      square = std::max(square, dot(node.v, node.v));
       if (state.spins.empty()) continue;
       NodeSpin& spin = state.spins[b.nodes[i]];
       const Quaternion& q = turn[chunk.body];
       spin.w = b.motion.w;
       spin.q[0] = q.w, spin.q[1] = q.x, spin.q[2] = q.y, spin.q[3] = q.z;
     }
+    fastest[c] = square;
   });
+  double square = 0;
+  for (const double s : fastest) square = std::max(square, s);
+  return std::sqrt(square);
 }
 
 // Bodies that joints connect are solved together.

@@ -59,8 +59,8 @@ class RigidBodies {
   void gather(State& state, Team& team);
   // Advances all bodies by state.dt; books work of constraints (external) and joints.
   void integrate(State& state, Joints* joints = nullptr);
-  // Sets position, velocity and spin of all nodes of bodies.
-  void place_nodes(State& state, Team& team);
+  // Sets position, velocity and spin of all nodes of bodies; returns the highest speed of any.
+  double place_nodes(State& state, Team& team);
 
   int size() const { return int(bodies_.size()); }
   const RigidBody& operator[](int body) const { return bodies_[body]; }

@@ -25,17 +25,19 @@ Vec3d Simulation::acceleration(int node) const {
 
 // kinetic energy at t(n); the first call fixes the energy that the run starts with
 void Simulation::update_energies() {
-  double kinetic = rigid_bodies_->kinetic_energy();
+  double kinetic = rigid_bodies_->kinetic_energy(), eroded = 0;
   for (int n = 0; n < int(state_.nodes.size()); ++n) {
     if (state_.owner[n] == NodeOwner::rigid) continue;
     const Vec3d v = velocity(n);
-    kinetic += 0.5 * state_.nodes[n].mass * dot(v, v);
+    double& sum = erosion_.eroded(n) ? eroded : kinetic;
+    sum += 0.5 * state_.nodes[n].mass * dot(v, v);
     if (!state_.spins.empty() && state_.spins[n].inertia > 0) {
       const Vec3d& w = state_.spins[n].w;
-      kinetic += 0.5 * state_.spins[n].inertia * dot(w, w);
+      sum += 0.5 * state_.spins[n].inertia * dot(w, w);
     }
   }
-  state_.energy.kinetic = kinetic;
+  kinetic += mass_scaling_.selective().kinetic_energy([&](int n) { return velocity(n); });
+  state_.energy.kinetic = kinetic, state_.energy.eroded_kinetic = eroded;
   if (!energy_started_) {
     energy_started_ = true;
     state_.energy.initial = state_.energy.total() - state_.energy.external_work;

@@ -36,7 +36,8 @@ Simulation::Simulation(const Model& model, const RunOptions& options, Diagnostic
     : model_(model),
       team_(options.threads),
       tiles_(model, diagnostics),
-      mass_scaling_(model.controls) {
+      erosion_(model, tiles_),
+      mass_scaling_(model) {
   end_time_ = options.end_time > 0 ? options.end_time : model.controls.end_time;
   set_up_masses(diagnostics);
   if (diagnostics.has_errors()) return;
@@ -48,6 +49,7 @@ Simulation::Simulation(const Model& model, const RunOptions& options, Diagnostic
   rigid_bodies_ = std::make_unique<RigidBodies>(model, state_, diagnostics);
   contacts_ = std::make_unique<Contacts>(model, state_, contact_input(), diagnostics);
   for (const RigidTie& t : contacts_->rigid_ties()) rigid_bodies_->add_node(state_, t.part, t.node);
+  mass_scaling_.settle(state_);
   rigid_bodies_->finish(state_, diagnostics);
   joints_ = std::make_unique<Joints>(model, *rigid_bodies_, diagnostics);
   node_constraints_ = std::make_unique<NodeConstraints>(model, state_, diagnostics);
@@ -62,6 +64,7 @@ Simulation::Simulation(const Model& model, const RunOptions& options, Diagnostic
   node_constraints_->stop_supported(state_);
   part_internal_.assign(model.parts.size(), 0);
   part_hourglass_.assign(model.parts.size(), 0);
+  part_eroded_internal_.assign(model.parts.size(), 0);
 }
 
 void Simulation::set_up_masses(Diagnostics& diagnostics) {
@@ -167,8 +170,20 @@ void Simulation::element_forces() {
     state_.energy.internal += t.internal;
     state_.energy.hourglass += t.hourglass;
     state_.energy.damping += t.damping;
+    if (t.failed > 0) set_apart(t);
   }
+  erosion_.update(tiles_);
   if (mass_scaling_.active()) mass_scaling_.update(model_, state_, tiles_);
+}
+
+// what the elements held that have failed just now
+void Simulation::set_apart(const Tile& t) {
+  const int part = tiles_.classes[t.tile_class].part;
+  Energies& e = state_.energy;
+  part_internal_[part] -= t.eroded_internal, part_hourglass_[part] -= t.eroded_hourglass;
+  part_eroded_internal_[part] += t.eroded_internal;
+  e.internal -= t.eroded_internal, e.hourglass -= t.eroded_hourglass;
+  e.eroded_internal += t.eroded_internal, e.eroded_hourglass += t.eroded_hourglass;
 }
 
 void Simulation::contact_forces() { contacts_->forces(model_, state_, team_); }
@@ -177,7 +192,7 @@ void Simulation::contact_forces() { contacts_->forces(model_, state_, team_); }
 void Simulation::external_forces() {
   discrete_->forces(model_, state_, team_);
   loads_->forces(state_, *rigid_bodies_);
-  rigid_walls_->forces(state_, team_);
+  rigid_walls_->forces(state_, team_, rigid_speed_);
 }
 
 // sums element partials in tile order and the fixed-point interaction forces
@@ -192,12 +207,15 @@ void Simulation::assemble() {
   });
   loads_->body_forces(state_, *rigid_bodies_, team_);
   contacts_->transfer_tied_forces(state_, team_);
+  mass_scaling_.selective().correct(state_, *node_constraints_, team_);
 }
 
 // v(n+1/2) = v(n-1/2) + dt a, then everything that prescribes motion
 void Simulation::accelerate() {
   const double dt = state_.mean_dt();
   rigid_bodies_->gather(state_, team_);
+  const bool bound = rigid_walls_->size() > 0;
+  chunk_speed_.assign(bound ? chunks_of(model_.nodes.size()) : 0, 0);
   for_chunks(team_, model_.nodes.size(), [&](int a, int b) {
     for (int n = a; n < b; ++n) {
       if (state_.owner[n] != NodeOwner::free) continue;
@@ -206,11 +224,30 @@ void Simulation::accelerate() {
       if (!state_.spins.empty() && state_.spins[n].inertia > 0)
         state_.spins[n].w += (dt / state_.spins[n].inertia) * state_.moment[n];
     }
+    if (bound) chunk_speed_[a / chunk_size] = fastest_unowned(a, b);
   });
   if (damping_->active()) damping_->apply(state_, *rigid_bodies_, team_);
   node_constraints_->apply(state_);
-  rigid_walls_->apply(state_, team_);
+  rigid_walls_->apply(state_, team_, damping_->active() ? -1 : speed_bound());
   rigid_bodies_->integrate(state_, joints_.get());
+}
+
+// highest |v|^2 of nodes a..b that no rigid body owns
+double Simulation::fastest_unowned(int a, int b) const {
+  double square = 0;
+  for (int n = a; n < b; ++n)
+    if (state_.owner[n] != NodeOwner::rigid)
+      square = std::max(square, dot(state_.nodes[n].v, state_.nodes[n].v));
+  return square;
+}
+
+// a bound of |v+| of these nodes: nodes with conditions got theirs after the others
+double Simulation::speed_bound() const {
+  double square = 0;
+  for (const double s : chunk_speed_) square = std::max(square, s);
+  for (const NodeConstraints::Reaction& r : node_constraints_->reactions())
+    square = std::max(square, dot(state_.nodes[r.node].v, state_.nodes[r.node].v));
+  return std::sqrt(square);
 }
 
 void Simulation::advance_nodes() {
@@ -219,7 +256,7 @@ void Simulation::advance_nodes() {
     for (int n = a; n < b; ++n)
       if (state_.owner[n] == NodeOwner::free) state_.nodes[n].x += dt * state_.nodes[n].v;
   });
-  rigid_bodies_->place_nodes(state_, team_);
+  rigid_speed_ = rigid_bodies_->place_nodes(state_, team_);
   contacts_->place_tied_nodes(state_, team_);
 }
 

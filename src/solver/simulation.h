@@ -12,6 +12,7 @@
 #include "solver/contact.h"
 #include "solver/damping.h"
 #include "solver/discrete_elements.h"
+#include "solver/erosion.h"
 #include "solver/initial_conditions.h"
 #include "solver/joints.h"
 #include "solver/loads.h"
@@ -93,6 +94,9 @@ class Simulation {
   const DiscreteElements& discrete_elements() const { return *discrete_; }
   const std::vector<double>& part_internal() const { return part_internal_; }
   const std::vector<double>& part_hourglass() const { return part_hourglass_; }
+  // internal energy that failed elements of a part held
+  const std::vector<double>& part_eroded_internal() const { return part_eroded_internal_; }
+  const Erosion& erosion() const { return erosion_; }
   const MassScaling& mass_scaling() const { return mass_scaling_; }
   // of a node at t(n), while sampling: mean of the two half-step velocities, and their difference
   // over the step
@@ -101,11 +105,14 @@ class Simulation {
 
  private:
   void element_forces();
+  void set_apart(const Tile& tile);
   void contact_forces();
   void external_forces();
   void assemble();
   void accelerate();
   void advance_nodes();
+  double fastest_unowned(int a, int b) const;
+  double speed_bound() const;
   void account_energy();
   void choose_time_step();
   void check_health();
@@ -124,6 +131,7 @@ class Simulation {
   Team team_;
   State state_;
   Tiles tiles_;
+  Erosion erosion_;
   MassScaling mass_scaling_;
   std::unique_ptr<RigidBodies> rigid_bodies_;
   std::unique_ptr<Joints> joints_;
@@ -133,9 +141,11 @@ class Simulation {
   std::unique_ptr<MassDamping> damping_;
   std::unique_ptr<DiscreteElements> discrete_;
   std::unique_ptr<Contacts> contacts_;
-  std::vector<double> part_internal_, part_hourglass_;
+  std::vector<double> part_internal_, part_hourglass_, part_eroded_internal_;
   std::vector<Vec3d> velocity_before_;  // v(n-1/2), while sampling
   double end_time_ = 0, physical_mass_ = 0, initial_step_ = 0;
+  std::vector<double> chunk_speed_;  // highest |v|^2 of chunks of nodes, where walls ask for it
+  double rigid_speed_ = -1;          // highest |v| of nodes of rigid bodies; negative: unknown
   bool energy_started_ = false;
   Ending ending_ = Ending::running;
   std::string ending_text_;

@@ -187,6 +187,9 @@ Tiles::Tiles(const Model& model, Diagnostics& diagnostics) {
     }
   }
   steps.resize(steps_size);
+  if (std::any_of(classes.begin(), classes.end(),
+                  [](const TileClass& c) { return c.kernel->can_fail(); }))
+    energies.resize(steps_size);
   force.resize(node.size());
   if (any_rotations) moment.resize(node.size());
 
@@ -347,8 +350,11 @@ void Tiles::forces(State& state, Team& team) {
       view.node_pressure = nodal_pressure_.pressure(t.node_first);
     }
     if (record_steps) view.element_time_step = steps.data() + t.step;
+    if (c.kernel->can_fail()) view.element_energy = energies.data() + t.step;
     c.kernel->forces(c.parameters, Real(state.dt_previous), view);
     t.internal = view.internal, t.hourglass = view.hourglass, t.damping = view.damping;
+    t.eroded_internal = view.eroded_internal, t.eroded_hourglass = view.eroded_hourglass,
+    t.failed = view.failed;
     t.time_step = view.time_step, t.smallest_volume = view.smallest_volume;
   });
 }
@@ -464,6 +470,8 @@ void Tiles::save(std::ostream& out) const {
   const std::uint64_t n = state_.size();
   out.write(reinterpret_cast<const char*>(&n), sizeof n);
   out.write(reinterpret_cast<const char*>(state_.data()), std::streamsize(n * sizeof(Real)));
+  out.write(reinterpret_cast<const char*>(energies.data()),
+            std::streamsize(energies.size() * sizeof(ElementEnergy)));
   nodal_pressure_.save(out);
 }
 
@@ -473,6 +481,8 @@ void Tiles::load(std::istream& in) {
   if (n != state_.size())
     throw std::runtime_error("restart file does not belong to this deck: element history differs");
   in.read(reinterpret_cast<char*>(state_.data()), std::streamsize(n * sizeof(Real)));
+  in.read(reinterpret_cast<char*>(energies.data()),
+          std::streamsize(energies.size() * sizeof(ElementEnergy)));
   nodal_pressure_.load(in);
 }
 

@@ -31,6 +31,8 @@ struct Tile {
   std::size_t connectivity, state, step;
   // results of the last pass
   double internal = 0, hourglass = 0, damping = 0;
+  double eroded_internal = 0, eroded_hourglass = 0;  // what elements held that failed in it
+  int failed = 0;
   Real time_step = 0, smallest_volume = 0;
 };
 
@@ -84,6 +86,11 @@ class Tiles {
   // when set, forces() leaves every element's own stable step in `steps`, at tile.step + slot
   bool record_steps = false;
   AlignedVector<Real> steps;
+  // of elements that may fail, at tile.step + slot; empty if none may
+  std::vector<ElementEnergy> energies;
+  bool has_failed(int tile, int slot) const {
+    return !energies.empty() && energies[tiles[tile].step + slot].failed;
+  }
   int elements() const { return int(element.size()); }
 
   const std::vector<ElementPlace>& places(Family family) const;

@@ -53,6 +53,8 @@ class KernelOf : public Kernel {
         call(p, dt_previous, t, b, k, c, s, out, totals);
         if (b == blocks - 1 && t.count % block_size != 0)
           drop_padding(t.count - b * block_size - k * W, out, totals);
+        if constexpr (M::can_fail)
+          if (t.element_energy) keep_energies(t, b, k, totals);
         internal[k] += totals.internal, hourglass[k] += totals.hourglass,
             damping[k] += totals.damping;
         if constexpr (M::can_fail)
@@ -135,6 +137,26 @@ class KernelOf : public Kernel {
     totals.internal = select(live, totals.internal, L(0.0));
     totals.hourglass = select(live, totals.hourglass, L(0.0));
     totals.damping = select(live, totals.damping, L(0.0));
+  }
+
+  // Adds to the energies of each element. One that has failed takes up nothing more; what one held
+  // that fails now is handed out.
+  static void keep_energies(TileView& t, int b, int k, Totals<L>& totals) {
+    ElementEnergy* const element = t.element_energy + b * block_size + k * W;
+    const int valid = std::min(W, t.count - b * block_size - k * W);
+    for (int i = 0; i < valid; ++i) {
+      ElementEnergy& e = element[i];
+      if (e.failed) {
+        set(totals.internal, i, Real(0)), set(totals.hourglass, i, Real(0)),
+            set(totals.damping, i, Real(0));
+        continue;
+      }
+      e.internal += double(get(totals.internal, i)),
+          e.hourglass += double(get(totals.hourglass, i));
+      if (get(totals.alive, i) > 0) continue;
+      e.failed = true, ++t.failed;
+      t.eroded_internal += e.internal, t.eroded_hourglass += e.hourglass;
+    }
   }
 
   template <int C>
