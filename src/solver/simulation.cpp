@@ -200,10 +200,10 @@ void Simulation::assemble() {
   const bool rotations = !state_.spins.empty();
   for_chunks(team_, model_.nodes.size(), [&](int a, int b) {
     tiles_.sum_partials(state_, a, b);
-    for (int n = a; n < b; ++n) {
-      state_.force[n] += state_.interaction.take(n);
-      if (rotations) state_.moment[n] += state_.interaction_moment.take(n);
-    }
+    state_.interaction.take_all(a, b, [&](std::size_t n, const Vec3d& f) { state_.force[n] += f; });
+    if (rotations)
+      state_.interaction_moment.take_all(
+          a, b, [&](std::size_t n, const Vec3d& m) { state_.moment[n] += m; });
   });
   loads_->body_forces(state_, *rigid_bodies_, team_);
   contacts_->transfer_tied_forces(state_, team_);
