@@ -53,15 +53,16 @@ double landmark_rms(const Skeleton& skeleton, const std::string& column) {
 }
 
 // [mm] largest distance between a node and the mirror image of its partner on the other side
-double asymmetry(const Body& body) {
+double asymmetry(const Body& body, std::string& where) {
   double worst = 0;
   for (const PlacedBone& right : body.bones) {
     if (right.side != Side::right) continue;
     const int left = find_bone(body.bones, right.mesh.name, Side::left);
     if (left < 0) continue;
-    for (std::size_t i = 0; i < right.nodes.size(); ++i)
-      worst =
-          std::max(worst, norm(right.nodes[i] - mirror(body.bones[std::size_t(left)].nodes[i])));
+    for (std::size_t i = 0; i < right.nodes.size(); ++i) {
+      const double off = norm(right.nodes[i] - mirror(body.bones[std::size_t(left)].nodes[i]));
+      if (off > worst) worst = off, where = right.mesh.name;
+    }
   }
   return worst;
 }
@@ -152,6 +153,43 @@ void bone_rows(Rows& rows, const Body& body, Resolution resolution) {
            error <= limit);
 }
 
+// how the bones hang together: only where they were joined
+void joint_rows(Rows& rows, const Body& body) {
+  if (body.between.pieces.empty()) return;
+  const ClearanceReport& clear = body.joined.clearance;
+  std::string pairs;
+  for (const std::string& pair : clear.left) pairs += "; " + pair;
+  rows.add("pairs of bones that reach into one another, deepest",
+           fmt::format("{}, {:.2f} mm ({}){}", clear.left.size(), std::max(0.0, -clear.least_gap),
+                       clear.least_gap_pair, pairs),
+           "0", clear.left.empty());
+  rows.add("farthest that a bone's surface gave way",
+           fmt::format("{:.2f} mm ({})", clear.largest_shift, clear.largest_shift_bone), "reported",
+           true, false);
+  const std::vector<std::string> alone = unconnected(body.bones, body.between);
+  std::string names;
+  for (const std::string& name : alone) names += " " + name;
+  rows.add("bones and pieces that nothing connects with the rest",
+           fmt::format("{}{}", alone.size(), names), "0", alone.empty());
+}
+
+void topology_rows(Rows& rows, const Body& body, const Model& model, const CheckReport& check) {
+  const Topology t = topology(body, model);
+  rows.add("bones whose Euler number is not that of anatomy",
+           fmt::format("{}{}", t.wrong_euler, t.names), "0", t.wrong_euler == 0);
+  rows.add("open edges of the bones' surfaces", fmt::format("{}", t.open_edges), "0",
+           t.open_edges == 0);
+  rows.add("elements that occur twice", fmt::format("{}", t.duplicates), "0", t.duplicates == 0);
+  rows.add("nodes that belong to nothing", fmt::format("{}", check.unreferenced_nodes), "0",
+           check.unreferenced_nodes == 0);
+  if (symmetric(body.posture)) {
+    std::string where = "none";
+    const double off = asymmetry(body, where);
+    rows.add("left against right, largest distance from the mirror image",
+             fmt::format("{:.1e} mm ({})", off, where), "at most 1e-6 mm", off <= 1e-6);
+  }
+}
+
 }  // namespace
 
 std::vector<Measure> measure_body(const Body& body, const AssembledBody& assembled,
@@ -199,19 +237,8 @@ std::vector<Measure> measure_body(const Body& body, const AssembledBody& assembl
     rows.add("nodes of ties that find no surface", fmt::format("{}", outside.untied_nodes), "0",
              outside.untied_nodes == 0);
   }
-  const Topology t = topology(body, model);
-  rows.add("bones whose Euler number is not that of anatomy",
-           fmt::format("{}{}", t.wrong_euler, t.names), "0", t.wrong_euler == 0);
-  rows.add("open edges of the bones' surfaces", fmt::format("{}", t.open_edges), "0",
-           t.open_edges == 0);
-  rows.add("elements that occur twice", fmt::format("{}", t.duplicates), "0", t.duplicates == 0);
-  rows.add("nodes that belong to nothing", fmt::format("{}", check.unreferenced_nodes), "0",
-           check.unreferenced_nodes == 0);
-  if (symmetric(body.posture)) {
-    const double off = asymmetry(body);
-    rows.add("left against right, largest distance from the mirror image",
-             fmt::format("{:.1e} mm", off), "at most 1e-6 mm", off <= 1e-6);
-  }
+  joint_rows(rows, body);
+  topology_rows(rows, body, model, check);
   rows.add("time to make the body, one core", fmt::format("{:.1f} s", outside.seconds),
            body.resolution == Resolution::standard ? "under 30 s" : "reported",
            body.resolution != Resolution::standard || outside.seconds < 30,

@@ -41,7 +41,8 @@ struct ClearanceReport {
 
 // Moves the surface nodes of bones that stand nearer than the wanted gap (0.2 mm where no joint is)
 // apart, half each, along the normal of the nearer face; the nodes inside follow. Changes nodes and
-// mesh.nodes. A node that would turn a brick over stays and the gap left is reported.
+// mesh.nodes. A node that would turn a brick over stays and the gap left is reported. Bones of the
+// two sides that mirror each other before do so exactly after.
 ClearanceReport clear_bones(std::vector<PlacedBone>& bones);
 
 }  // namespace fabrica::body

@@ -51,6 +51,10 @@ class Movable {
   }
   // moves the surface nodes by their wishes and the inner ones along; says whether any moved
   bool move();
+  // takes over the wishes of the bone on the other side, mirrored
+  void share(const Movable& twin);
+  // becomes the mirror image of the bone on the other side
+  void mirror_of(const Movable& twin);
 
   PlacedBone& bone;
   std::unique_ptr<BoneSurface> surface;
@@ -119,6 +123,54 @@ bool Movable::move() {
   return true;
 }
 
+void Movable::share(const Movable& twin) {
+  for (std::size_t n = 0; n < shift_.size(); ++n) wish(int(n), mirror(twin.shift_[n]));
+}
+
+void Movable::mirror_of(const Movable& twin) {
+  for (std::size_t n = 0; n < shift_.size(); ++n) {
+    bone.nodes[n] = mirror(twin.bone.nodes[n]);
+    shift_[n] = {0, 0, 0};
+  }
+  total = twin.total;
+  rebuild();
+}
+
+// For each bone the index of the bone that is its mirror image, -1: none stands so.
+std::vector<int> twins_of(const std::vector<PlacedBone>& bones) {
+  std::vector<int> twins(bones.size(), -1);
+  for (std::size_t r = 0; r < bones.size(); ++r) {
+    if (bones[r].side != Side::right) continue;
+    const int l = find_bone(bones, bones[r].mesh.name, Side::left);
+    if (l < 0) continue;
+    const std::vector<Point>&right = bones[r].nodes, &left = bones[std::size_t(l)].nodes;
+    bool same = right.size() == left.size();
+    for (std::size_t n = 0; same && n < right.size(); ++n)
+      same = norm(right[n] - mirror(left[n])) < 1e-6;
+    if (same) twins[r] = l, twins[std::size_t(l)] = int(r);
+  }
+  return twins;
+}
+
+// Moves all bones by their wishes. Mirror images move as one: the midline bones between them are
+// not symmetric, and each side alone would give way differently.
+bool move_all(std::vector<Movable>& bones, const std::vector<int>& twins) {
+  bool any = false;
+  for (std::size_t i = 0; i < bones.size(); ++i) {
+    Movable& m = bones[i];
+    if (twins[i] < 0) {
+      any = m.move() || any;
+    } else if (m.bone.side == Side::right) {
+      Movable& left = bones[std::size_t(twins[i])];
+      m.share(left);
+      if (!m.move()) continue;
+      left.mirror_of(m);
+      any = true;
+    }
+  }
+  return any;
+}
+
 struct Pair {
   int a, b;
   double gap;  // wanted
@@ -154,26 +206,33 @@ void press(Movable& m, const Point& place, const Point& shift) {
     const double r = norm(m.bone.nodes[n] - place) / L;
     if (r < 1) m.wish(int(n), ((1 - r * r) * (1 - r * r)) * shift);
   }
-  m.move();
 }
 
-// Ends of bones that reach into each other, first the joints as a whole. Of bones that are joined
-// only the first gives way.
-void press_ends(std::vector<Movable>& bones, const std::vector<Articulation>& joints) {
+// the wishes of the two ends at a joint; of bones that are joined only the first gives way
+void press_joint(std::vector<Movable>& bones, const Articulation& joint) {
+  Movable &a = bones[std::size_t(joint.a)], &b = bones[std::size_t(joint.b)];
+  const double gap = std::min(wanted_gap(joint), 0.3);
+  Overlap overlap;
+  double weight = 0;
+  collect(a, b, gap, 1, overlap, weight);
+  collect(b, a, gap, -1, overlap, weight);
+  const double length = norm(overlap.normal);
+  if (overlap.depth < 0.15 || length == 0) return;
+  const Point normal = (1 / length) * overlap.normal, place = (1 / weight) * overlap.place;
+  const double share = joint.kind == ArticulationKind::joined ? 1 : 0.5;
+  press(a, place, share * overlap.depth * normal);
+  if (share < 1) press(b, place, (-share * overlap.depth) * normal);
+}
+
+// Ends of bones that reach into each other, first the joints as a whole: right and left of a row
+// of the table at once.
+void press_ends(std::vector<Movable>& bones, const std::vector<Articulation>& joints,
+                const std::vector<int>& twins) {
   for (int pass = 0; pass < 3; ++pass)
-    for (const Articulation& joint : joints) {
-      Movable &a = bones[std::size_t(joint.a)], &b = bones[std::size_t(joint.b)];
-      const double gap = std::min(wanted_gap(joint), 0.3);
-      Overlap overlap;
-      double weight = 0;
-      collect(a, b, gap, 1, overlap, weight);
-      collect(b, a, gap, -1, overlap, weight);
-      const double length = norm(overlap.normal);
-      if (overlap.depth < 0.15 || length == 0) continue;
-      const Point normal = (1 / length) * overlap.normal, place = (1 / weight) * overlap.place;
-      const double share = joint.kind == ArticulationKind::joined ? 1 : 0.5;
-      press(a, place, share * overlap.depth * normal);
-      if (share < 1) press(b, place, (-share * overlap.depth) * normal);
+    for (std::size_t k = 0; k < joints.size(); ++k) {
+      press_joint(bones, joints[k]);
+      const bool other_side = k + 1 < joints.size() && joints[k + 1].name == joints[k].name;
+      if (!other_side) move_all(bones, twins);
     }
 }
 
@@ -225,7 +284,8 @@ ClearanceReport clear_bones(std::vector<PlacedBone>& bones) {
   std::vector<Movable> movable;
   movable.reserve(bones.size());
   for (PlacedBone& bone : bones) movable.emplace_back(bone);
-  press_ends(movable, joints);
+  const std::vector<int> twins = twins_of(bones);
+  press_ends(movable, joints, twins);
   const std::vector<Pair> pairs = near_pairs(movable, joints);
 
   ClearanceReport report;
@@ -242,9 +302,7 @@ ClearanceReport clear_bones(std::vector<PlacedBone>& bones) {
         report.left.push_back(part_name(a.bone, "") + " " + part_name(b.bone, ""));
     }
     if (pass == passes) break;
-    bool moved = false;
-    for (Movable& bone : movable) moved = bone.move() || moved;
-    if (!moved) break;
+    if (!move_all(movable, twins)) break;
   }
   for (Movable& m : movable) {
     if (m.total == 0) continue;

@@ -123,3 +123,29 @@ TEST_CASE("a part that hangs on nothing is named") {
   REQUIRE(alone.size() == 1);
   CHECK(alone[0].find(".c.") != std::string::npos);
 }
+
+// Two blocks that mirror each other reach by 0.5 mm on the right, and 0.1 mm on the left, into a
+// block of the midline that stands 0.2 mm off the plane of symmetry. Invariance: what mirrored
+// before mirrors after, to rounding.
+TEST_CASE("bones of both sides still mirror each other where the bone between is not symmetric") {
+  PlacedBone right = block("plate", {2, -10, 2}, 5.3, 3);
+  right.side = Side::right;
+  PlacedBone left = right;
+  left.side = Side::left;
+  left.mesh = mirrored(right.mesh);
+  for (Point& p : left.nodes) p = mirror(p);
+  PlacedBone middle = block("wedge", {0, -5.2, 0}, 10, 4);
+  middle.side = Side::midline;
+  std::vector<PlacedBone> bones{right, left, middle};
+  const ClearanceReport report = clear_bones(bones);
+  CHECK(report.left.empty());
+  CHECK(report.largest_shift > 0.2);
+  double off = 0, moved = 0;
+  for (std::size_t n = 0; n < right.nodes.size(); ++n) {
+    off = std::max(off, norm(bones[0].nodes[n] - mirror(bones[1].nodes[n])));
+    off = std::max(off, norm(bones[1].nodes[n] - bones[1].mesh.nodes[n]));
+    moved = std::max(moved, norm(bones[1].nodes[n] - left.nodes[n]));
+  }
+  CHECK(off < 1e-12);
+  CHECK(moved > 0.2);
+}
