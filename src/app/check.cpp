@@ -24,6 +24,20 @@ void print_contacts(const Model& model, const InitialReport& r) {
                p.depth);
 }
 
+// LS-DYNA pushes back what penetrates at the start where IGNORE is 0; here it stays
+void warn_of_penetrations(const Model& model, const Contacts& contacts, Diagnostics& diagnostics) {
+  for (const ContactCheck& c : contacts.checks()) {
+    const Contact& contact = model.contacts[c.contact];
+    if (contact.ignore == 0 && c.initial_nodes > 0)
+      diagnostics.warning(
+          "contact-ignore-0", contact.where, "CONTACT", "ignore",
+          fmt::format("contact {}: {} nodes penetrate at the start, by up to {:.4g}; "
+                      "this is not pushed back",
+                      contact.id, c.initial_nodes, c.initial_depth),
+          "Move the surfaces apart, or accept it by IGNORE = 1");
+  }
+}
+
 }  // namespace
 
 int check_command(const CheckCommand& c) {
@@ -37,6 +51,7 @@ int check_command(const CheckCommand& c) {
       if (!diagnostics.has_errors()) {
         simulation.step();
         print_contacts(*model, simulation.contacts().initial_report());
+        warn_of_penetrations(*model, simulation.contacts(), diagnostics);
       }
     }
     if (!c.write.empty()) {

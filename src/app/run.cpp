@@ -197,6 +197,11 @@ std::vector<std::string> findings(const Simulation& s) {
   for (const ContactCheck& c : s.contacts().checks()) {
     const Model& m = s.model();
     const PenetrationCheck& p = c.deepest;
+    if (m.contacts[c.contact].ignore == 0 && c.initial_nodes > 0)
+      list.push_back(fmt::format(
+          "contact {}: {} nodes penetrate at the start, by up to {:.4g}; with IGNORE = 0 too this "
+          "is not pushed back",
+          m.contacts[c.contact].id, c.initial_nodes, c.initial_depth));
     if (p.released > 0)
       list.push_back(fmt::format("contact {}: {} times a node went so deep that it was let go",
                                  m.contacts[c.contact].id, p.released));

@@ -24,15 +24,11 @@ bool is_two_way(ContactKind k) {
 }
 
 // options that are read but act differently here
-void check_options(const Model& model, const Contact& c, Diagnostics& diagnostics) {
+void check_options(const Contact& c, Diagnostics& diagnostics) {
   auto warn = [&](const char* name, const char* field, const std::string& message) {
     diagnostics.warning(name, c.where, "CONTACT", field,
                         "contact " + std::to_string(c.id) + ": " + message);
   };
-  if (c.ignore == 0 && model.controls.contact_ignore == 0 && !is_tied(c.kind))
-    warn("contact-ignore-0", "ignore",
-         "nodes that penetrate at the start stay where they are; their penetration is not pushed "
-         "back");
   if (c.fs == -2)
     warn("contact-friction-table", "fs",
          "friction of *DEFINE_FRICTION (FS=-2) is not used: no friction");
@@ -93,7 +89,7 @@ Contacts::Contacts(const Model& model, State& state, const ContactInput& input,
 void Contacts::add_contact(const Model& model, int index, const SurfaceSource& source,
                            Diagnostics& diagnostics) {
   const Contact& contact = model.contacts[index];
-  check_options(model, contact, diagnostics);
+  check_options(contact, diagnostics);
   auto add = [&](ContactSurface tracked, ContactSurface reference, bool second) {
     passes_.push_back(std::make_unique<ContactPass>(model, contact, index, std::move(tracked),
                                                     std::move(reference), carriers_));
