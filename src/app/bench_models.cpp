@@ -24,6 +24,17 @@ void add_part(Builder& b, int id, int section, int material) {
   b.add_card(std::move(card));
 }
 
+// a rigid wall in the plane z = 0
+void add_floor(Builder& b) {
+  b.add_card("RIGIDWALL_PLANAR")
+      .set("xt", 0)
+      .set("yt", 0)
+      .set("zt", 0)
+      .set("xh", 0)
+      .set("yh", 0)
+      .set("zh", 1);
+}
+
 // nx x ny x nz cells of edge h; node and element ids start after the given ones
 void add_bricks(Builder& b, int part, int nx, int ny, int nz, double h, Vec3d at,
                 std::int64_t node0, std::int64_t element0) {
@@ -62,13 +73,7 @@ std::unique_ptr<Model> bench_bricks(int elements, Diagnostics& diagnostics) {
   add_steel(b, 1);
   add_part(b, 1, 1, 1);
   add_velocity(b, 1, -10);
-  b.add_card("RIGIDWALL_PLANAR")
-      .set("xt", 0)
-      .set("yt", 0)
-      .set("zt", 0)
-      .set("xh", 0)
-      .set("yh", 0)
-      .set("zh", 1);
+  add_floor(b);
   return b.finish();
 }
 
@@ -103,13 +108,7 @@ std::unique_ptr<Model> bench_tets(int elements, Diagnostics& diagnostics) {
   b.add_card("MAT_ELASTIC").set("mid", 1).set("ro", 1.1e-6).set("e", 0.5).set("pr", 0.4);
   add_part(b, 1, 1, 1);
   add_velocity(b, 1, -1);
-  b.add_card("RIGIDWALL_PLANAR")
-      .set("xt", 0)
-      .set("yt", 0)
-      .set("zt", 0)
-      .set("xh", 0)
-      .set("yh", 0)
-      .set("zh", 1);
+  add_floor(b);
   return b.finish();
 }
 
