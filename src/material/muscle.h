@@ -2,7 +2,7 @@
 // Hill-type muscle of trusses (*MAT_MUSCLE, 156): contractile, elastic and viscous part in
 // parallel.
 //   sigma = PIS a(t) f(lam) g(r) + PIS h(lam) + DMP lam'                                     (1)
-//   lam = SNO l / l0,   r = lam' / (SRM s(a))                                               (2)
+//   lam = SNO l / l0,   r = lam' / (SRM s(lam))                                              (2)
 //   h = (exp(CER (lam - 1) / SSM) - 1) / (exp(CER) - 1) for lam > 1, else 0, where SSP = 0   (3)
 // l length, l0 length at the start, lam stretch from the optimal length l0 / SNO, lam' its rate
 // (shortening negative), a = ALM activation, f = SVS, g = SVR, h = SSP, s = SFR. A negative field
@@ -37,7 +37,7 @@ struct Muscle {
   bool exponential;   // equation (3) instead of a curve
   Real steepest;      // largest slope of SVR [-]
   CurveView active;   // ALM over time
-  CurveView speed;    // SFR over activation
+  CurveView speed;    // SFR over lam
   CurveView length;   // SVS over lam
   CurveView rate;     // SVR over r
   CurveView passive;  // SSP over lam
@@ -96,7 +96,7 @@ struct Muscle {
       f = lookup(length, lam, f_slope);
       f_slope = select(f > zero, f_slope, zero), f = max(f, zero);
     }
-    if (speed) scale = max(lookup(speed, a, ignored), L(1e-6));
+    if (speed) scale = max(lookup(speed, lam, ignored), L(1e-6));
     const L fast = L(fastest) * scale;
     if (rate) g = max(lookup(rate, lam_rate / fast, ignored), zero);
     const L h = passive_part(lam, slope);

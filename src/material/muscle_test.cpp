@@ -54,8 +54,8 @@ TEST_CASE("muscle: isometric stress follows the curve of the stretch") {
   CHECK(path.to(32 * 0.4, 5.0) == 0);  // below the first point it does not push
 }
 
-// r = (dl / dt) / (lopt SRM SFR(a)), shortening negative; Hill's g = (1 + r) / (1 - 4 r)
-TEST_CASE("muscle: stress over velocity, and a slower muscle at less activation") {
+// r = (dl / dt) / (lopt SRM SFR(l / lopt)), shortening negative; Hill's g = (1 + r) / (1 - 4 r)
+TEST_CASE("muscle: stress over velocity, and a slower muscle at less stretch") {
   TestParameters::Points g;
   for (int i = 0; i <= 40; ++i) {
     const double r = -1 + i / 40.0;
@@ -72,7 +72,10 @@ TEST_CASE("muscle: stress over velocity, and a slower muscle at less activation"
         doctest::Approx(peak * 1.2).epsilon(20 * parameter_error));
   CHECK(path.to(path.at - 1.5 * srm * 32, 1) == 0);  // faster than the fastest: no push
 
-  TestParameters half = with(with(plain(), "svr", -4, g), "sfr", -5, {{0, 0}, {1, 1}});
+  // at half activation, which SFR does not ask for; it is 0.5 at the stretch reached
+  const double reached = sno - 0.25 * srm;
+  TestParameters half =
+      with(with(plain(), "svr", -4, g), "sfr", -5, {{0, 0}, {reached, 0.5}, {2, 1}});
   half.set("alm", 0.5);
   Path slow = start(half);
   CHECK(slow.to(l0 - 0.25 * srm * 32, 1) ==

@@ -45,26 +45,49 @@ double mean_over(const std::vector<double>& x, const std::vector<double>& y, dou
   return work / way;
 }
 
+namespace {
+
+// what a statistic is taken over: time, or the column `over`
+std::vector<double> abscissa(const CheckSpec& c, Channels& channels, std::size_t samples) {
+  std::vector<double> x = c.over.empty() ? channels.abscissa(c.model) : channels.column(c.over);
+  if (x.size() != samples)
+    throw StudyError("'" + c.model + "' and '" + c.over + "' are not sampled at the same times. " +
+                     "Give both databases one interval");
+  return x;
+}
+
+// the values of y where x lies within the range
+std::vector<double> within(const std::pair<double, double>& range, const std::vector<double>& x,
+                           const std::vector<double>& y) {
+  std::vector<double> kept;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    if (x[i] >= range.first && x[i] <= range.second) kept.push_back(y[i]);
+  if (kept.empty())
+    throw StudyError(fmt::format("the run has no sample from {} to {}. Correct the range",
+                                 range.first, range.second));
+  return kept;
+}
+
+}  // namespace
+
 double statistic(const CheckSpec& c, Channels& channels) {
-  const std::vector<double> y = channels.column(c.model);
+  std::vector<double> y = channels.column(c.model);
   for (const double v : y)
     if (!std::isfinite(v))
       throw StudyError("'" + c.model + "' holds a value that is not a number. Look at the run");
+  if (c.statistic == "mean") {
+    const std::vector<double> x = abscissa(c, channels, y.size());
+    const auto [low, high] = std::minmax_element(x.begin(), x.end());
+    return c.range ? mean_over(x, y, c.range->first, c.range->second)
+                   : mean_over(x, y, *low, *high);
+  }
+  if (c.range) y = within(*c.range, abscissa(c, channels, y.size()), y);
   if (c.statistic == "last") return y.back();
   if (c.statistic == "max") return *std::max_element(y.begin(), y.end());
   if (c.statistic == "min") return *std::min_element(y.begin(), y.end());
-  if (c.statistic == "peak" || c.statistic == "magnitude") {
-    const double peak = *std::max_element(
-        y.begin(), y.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-    return c.statistic == "peak" ? peak : std::abs(peak);
-  }
-  const std::vector<double> x =
-      c.over.empty() ? channels.abscissa(c.model) : channels.column(c.over);
-  if (x.size() != y.size())
-    throw StudyError("'" + c.model + "' and '" + c.over + "' are not sampled at the same times. " +
-                     "Give both databases one interval");
-  const auto [low, high] = std::minmax_element(x.begin(), x.end());
-  return c.range ? mean_over(x, y, c.range->first, c.range->second) : mean_over(x, y, *low, *high);
+  const double peak = *std::max_element(
+      y.begin(), y.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  return c.statistic == "peak" ? peak : std::abs(peak);
 }
 
 CheckResult evaluate(const CheckSpec& c, Channels& channels,

@@ -24,7 +24,7 @@ double mean_over(const std::vector<double>& x, const std::vector<double>& y, dou
                  double high);
 
 // The statistic that a check asks for; mean, last, max, min, or peak (the value of largest
-// magnitude, with its sign) or magnitude (without).
+// magnitude, with its sign) or magnitude (without); of the samples within its range, if it has one.
 double statistic(const CheckSpec& check, Channels& channels);
 
 // The outcome of a check. `named` gives numbers that are no columns ("rating:...", "fit:...").

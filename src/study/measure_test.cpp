@@ -27,9 +27,10 @@ struct Result {
   ~Result() { fs::remove_all(path); }
 };
 
-double value(Channels& channels, const std::string& statistic_name, const std::string& over = "") {
+double value(Channels& channels, const std::string& statistic_name, const std::string& over = "",
+             std::optional<std::pair<double, double>> range = {}) {
   CheckSpec c;
-  c.model = "a:f:1", c.statistic = statistic_name, c.over = over;
+  c.model = "a:f:1", c.statistic = statistic_name, c.over = over, c.range = range;
   return statistic(c, channels);
 }
 
@@ -47,6 +48,22 @@ TEST_CASE("statistics of a column are those of its numbers") {
   CHECK(value(channels, "mean") == doctest::Approx(-2.0 / 3));
   // work over way: 10*1 + 10*(-2) + (-5)*(-1) = -5 over 10 + 10 - 5 = 15
   CHECK(value(channels, "mean", "a:u") == doctest::Approx(-5.0 / 15));
+}
+
+// f is 0, 2, -6, 4 at the times 0 to 3
+TEST_CASE("a range bounds every statistic") {
+  const Result r;
+  Channels channels(r.path.string(), r.path.string());
+  const std::pair early{0.0, 1.5}, middle{1.0, 2.0};
+  CHECK(value(channels, "min", "", early) == 0);
+  CHECK(value(channels, "last", "", early) == 2);
+  CHECK(value(channels, "peak", "", early) == 2);
+  CHECK(value(channels, "max", "", middle) == 2);
+  CHECK(value(channels, "magnitude", "", middle) == 6);
+  CHECK(value(channels, "mean", "", middle) == -2);
+  CHECK(value(channels, "max", "a:u", {{14, 16}}) == 4);
+  CHECK_THROWS_WITH_AS(value(channels, "max", "", {{7, 8}}), doctest::Contains("no sample"),
+                       StudyError);
 }
 
 TEST_CASE("a quotient, a unit, and the head of a file are found") {
