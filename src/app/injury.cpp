@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "app/injury_strains.h"
 #include "injury/measures.h"
 #include "signal/channel_file.h"
 
@@ -33,6 +34,25 @@ fs::path histories(const std::string& input) {
   return fs::is_directory(fs::path(input) / "csv") ? fs::path(input) / "csv" : fs::path();
 }
 
+bool is_run(const std::string& input) {
+  return !histories(input).empty() || fs::exists(fs::path(input) / "d3plot");
+}
+
+// Strains of organs and ribs from the animations of the runs among the inputs.
+void add_strains(const InjuryCommand& c, Channels& channels) {
+  const StrainRequest request = strain_request(c.parts, c.strain);
+  bool any = false;
+  for (const std::string& input : c.inputs) {
+    any = any || fs::exists(fs::path(input) / "d3plot");
+    RunStrains run = strains_of_run(input, request);
+    for (const std::string& note : run.notes) fmt::print(stderr, "note: {}\n", note);
+    channels.merge(run.channels);
+  }
+  if (!any && !c.parts.empty())
+    throw SignalError("cannot-read", "--part names parts, but no input is a folder with a d3plot",
+                      "Give the folder of the run; *DATABASE_BINARY_D3PLOT makes it");
+}
+
 // "nodout:x_acceleration:7" of a run whose folder is an input -> its csv file and column
 std::string located(const InjuryCommand& c, const std::string& where) {
   const std::size_t colon = where.find(':');
@@ -57,10 +77,22 @@ void even_out(const std::string& role, Signal& s) {
   }
 }
 
+// Where the strain of a tissue could have come from.
+std::string strain_remedy(const InjuryCommand& c, const std::string& role) {
+  const std::string tissue = role.substr(0, role.find('.'));
+  for (const std::string& input : c.inputs) {
+    if (fs::exists(fs::path(input) / "d3plot"))
+      return "; no part of " + input + "/d3plot is titled so: --part " + tissue + "=ID,...";
+    if (!histories(input).empty())
+      return "; " + input + " has no d3plot: run with *DATABASE_BINARY_D3PLOT";
+  }
+  return "";
+}
+
 Channels read_channels(const InjuryCommand& c) {
   Channels channels;
   for (const std::string& input : c.inputs) {
-    if (!histories(input).empty()) continue;  // its channels are named one by one
+    if (is_run(input)) continue;  // its histories are named one by one
     for (Signal& s : read_all_signals(input)) {
       const std::string role = roles().count(s.name) ? s.name : role_of_code(s.name);
       if (!role.empty()) channels[role] = std::move(s);
@@ -77,6 +109,7 @@ Channels read_channels(const InjuryCommand& c) {
       found->second.unit = unit;
   }
   for (auto& [role, s] : channels) even_out(role, s);
+  add_strains(c, channels);
   if (!c.time_unit.empty())
     for (auto& [role, s] : channels)
       if (s.x_unit.empty()) s.x_unit = c.time_unit;
@@ -145,10 +178,13 @@ int injury_command(const InjuryCommand& c) {
   for (const std::string& text : c.settings) set_parameter(subject, text);
   const Channels channels = read_channels(c);
   if (channels.empty())
-    throw SignalError(
-        "no-such-channel", "no input holds a channel that a measure needs",
-        "Name channels by --channel role=curve; fabrica injury --list names the roles");
-  const std::vector<Judged> all = judge(subject, channels);
+    throw SignalError("no-such-channel", "no input holds a channel that a measure needs",
+                      "Name channels by --channel role=curve, or parts of a run by --part; fabrica "
+                      "injury --list names the roles");
+  std::vector<Judged> all = judge(subject, channels);
+  for (Judged& j : all)
+    if (!j.finding && !j.failed && j.measure->roles[0].ends_with(".strain"))
+      j.reason += strain_remedy(c, j.measure->roles[0]);
   print_table(all);
   if (!c.json.empty()) {
     std::ofstream out(c.json);
@@ -176,6 +212,11 @@ void add_injury(CLI::App& app, InjuryCommand& c) {
   injury->add_option("--unit", c.units,
                      "role=unit of a channel that names none, as head.ax=mm/ms2");
   injury->add_option("--time-unit", c.time_unit, "unit of the time of channels that name none");
+  injury->add_option("--part", c.parts,
+                     "TISSUE=PARTS of the run's d3plot, as brain=12,13 or ribs=21,22+23");
+  injury->add_option("--strain", c.strain, "of these parts: logarithmic or green")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"logarithmic", "green"}));
   injury->add_option("--set", c.settings,
                      "NAME=VALUE: age, chest_depth_mm, vc_factor, neck_arm_mm, neck, leg, ...");
   injury->add_option("--json", c.json, "write all figures here");

@@ -10,8 +10,8 @@ class App;
 namespace fabrica {
 
 struct InjuryCommand {
-  std::vector<std::string> inputs, channels, units, settings;
-  std::string time_unit, json;
+  std::vector<std::string> inputs, channels, units, settings, parts;
+  std::string time_unit, json, strain = "logarithmic";
   bool list = false;
 };
 void add_injury(CLI::App& app, InjuryCommand& command);
