@@ -183,7 +183,7 @@ int rate_command(const RateCommand& c) {
     fmt::print("  phase           {:.3f}   shift {:.4g} {}\n  correlation     {:.3f}\n", r.phase,
                r.shift, reference.x_unit, r.correlation);
     fmt::print("  total           {:.3f}   {}\n", r.total, cora_word(r.total));
-    corridor = corridors(r);
+    if (!c.plot.empty()) corridor = corridors(r);
     title = fmt::format("CORA {:.3f} {}", r.total, cora_word(r.total));
   }
   if (c.method != "cora") {
@@ -199,7 +199,7 @@ int rate_command(const RateCommand& c) {
                r.phase, r.shift, reference.x_unit);
     fmt::print("  magnitude EM    {:.3f}\n  slope ES        {:.3f}\n", r.magnitude, r.slope);
     fmt::print("  total R         {:.3f}   {}\n", r.total, iso18571_word(r.total));
-    if (corridor.empty()) corridor = corridors(r);
+    if (!c.plot.empty() && corridor.empty()) corridor = corridors(r);
     title += fmt::format("{}ISO 18571 {:.3f} {}", title.empty() ? "" : ", ", r.total,
                          iso18571_word(r.total));
   }

@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
+#include <charconv>
 #include <filesystem>
 #include <fstream>
+#include <string_view>
 
 #include "signal/iso_mme.h"
 #include "signal/units.h"
@@ -15,54 +16,76 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string trimmed(const std::string& s) {
-  const std::size_t a = s.find_first_not_of(" \t\r\""), b = s.find_last_not_of(" \t\r\"");
-  return a == std::string::npos ? "" : s.substr(a, b - a + 1);
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '"'; }
+
+std::string_view trimmed(std::string_view s) {
+  while (!s.empty() && is_blank(s.front())) s.remove_prefix(1);
+  while (!s.empty() && is_blank(s.back())) s.remove_suffix(1);
+  return s;
 }
 
+// The file stays as it was read; its cells are pieces of it, so it stays where it is.
 struct Table {
-  std::string path;
+  explicit Table(const std::string& file);
+  Table(const Table&) = delete;
+  Table& operator=(const Table&) = delete;
+
+  std::string path, text;
   std::vector<std::string> names;
-  std::vector<std::vector<std::string>> rows;
-  std::vector<int> lines;  // of the rows
+  std::vector<std::string_view> cells;  // names.size() per row
+  std::vector<int> lines;               // of the rows
+  std::size_t rows() const { return lines.size(); }
+  std::string_view cell(std::size_t row, int column) const {
+    return cells[row * names.size() + std::size_t(column)];
+  }
 };
 
-std::vector<std::string> cells(const std::string& line) {
-  const char separator = line.find(';') != std::string::npos ? ';' : ',';
-  std::vector<std::string> out;
-  std::size_t at = 0;
+std::string contents(const std::string& path) {
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  if (!in) throw SignalError("no-such-file", "cannot open " + path, "Check the path");
+  std::string text(std::size_t(std::max<std::streamoff>(in.tellg(), 0)), '\0');
+  in.seekg(0);
+  in.read(text.data(), std::streamsize(text.size()));
+  text.resize(std::size_t(in.gcount()));
+  return text;
+}
+
+// appends the cells of a line
+void add_cells(std::string_view line, std::vector<std::string_view>& out) {
+  const char separator = line.find(';') != std::string_view::npos ? ';' : ',';
   for (;;) {
-    const std::size_t end = line.find(separator, at);
-    out.push_back(trimmed(line.substr(at, end == std::string::npos ? end : end - at)));
-    if (end == std::string::npos) return out;
-    at = end + 1;
+    const std::size_t end = line.find(separator);
+    out.push_back(trimmed(line.substr(0, end)));
+    if (end == std::string_view::npos) return;
+    line.remove_prefix(end + 1);
   }
 }
 
-Table read_table(const std::string& path) {
-  std::ifstream in(path);
-  if (!in) throw SignalError("no-such-file", "cannot open " + path, "Check the path");
-  Table t{path, {}, {}, {}};
-  std::string line;
-  for (int number = 1; std::getline(in, line); ++number) {
+Table::Table(const std::string& file) : path(file), text(contents(file)) {
+  std::string_view rest = text;
+  for (int number = 1; !rest.empty(); ++number) {
+    const std::size_t end = rest.find('\n');
+    const std::string_view line = rest.substr(0, end);
+    rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
     if (trimmed(line).empty() || line[0] == '#') continue;
-    std::vector<std::string> row = cells(line);
-    if (t.names.empty()) {
-      t.names = std::move(row);
+    const std::size_t before = cells.size();
+    add_cells(line, cells);
+    if (names.empty()) {
+      names.assign(cells.begin(), cells.end());
+      const auto left = std::size_t(std::count(rest.begin(), rest.end(), '\n')) + 1;
+      cells.clear(), cells.reserve(left * names.size()), lines.reserve(left);
       continue;
     }
-    if (row.size() != t.names.size())
+    if (cells.size() - before != names.size())
       throw SignalError("ragged-signal",
-                        fmt::format("{}:{}: {} cells, the header has {}", path, number, row.size(),
-                                    t.names.size()),
+                        fmt::format("{}:{}: {} cells, the header has {}", path, number,
+                                    cells.size() - before, names.size()),
                         "Give each row one cell for each column");
-    t.rows.push_back(std::move(row));
-    t.lines.push_back(number);
+    lines.push_back(number);
   }
-  if (t.names.size() < 2)
+  if (names.size() < 2)
     throw SignalError("empty-signal", path + " has fewer than two columns",
                       "Give a header line and rows of numbers");
-  return t;
 }
 
 // the column of that name, with or without unit; -1 if there is none
@@ -88,10 +111,12 @@ int column(const Table& t, const std::string& name) {
 }
 
 double number(const Table& t, std::size_t row, int column) {
-  const std::string& cell = t.rows[row][column];
-  char* end = nullptr;
-  const double value = std::strtod(cell.c_str(), &end);
-  if (*end != '\0')
+  const std::string_view cell = t.cell(row, column);
+  const char *begin = cell.data(), *end = begin + cell.size();
+  if (begin != end && *begin == '+') ++begin;
+  double value = 0;
+  const auto [stop, error] = std::from_chars(begin, end, value);
+  if (error != std::errc() || stop != end)
     throw SignalError(
         "not-a-number",
         fmt::format("{}:{}: '{}' in column '{}'", t.path, t.lines[row], cell, t.names[column]),
@@ -108,9 +133,10 @@ struct Condition {
 Signal make_signal(const Table& t, int x, int y, const Condition& only = {}) {
   const NameAndUnit of_x = name_and_unit(t.names[x]), of_y = name_and_unit(t.names[y]);
   Signal s{of_y.name, of_y.unit, of_x.unit, {}, {}};
-  for (std::size_t row = 0; row < t.rows.size(); ++row) {
-    if (only.column >= 0 && t.rows[row][only.column] != only.value) continue;
-    if (t.rows[row][x].empty() || t.rows[row][y].empty()) continue;
+  if (only.column < 0) s.x.reserve(t.rows()), s.y.reserve(t.rows());
+  for (std::size_t row = 0; row < t.rows(); ++row) {
+    if (only.column >= 0 && t.cell(row, only.column) != only.value) continue;
+    if (t.cell(row, x).empty() || t.cell(row, y).empty()) continue;
     s.x.push_back(number(t, row, x));
     s.y.push_back(number(t, row, y));
   }
@@ -172,8 +198,10 @@ NameAndUnit name_and_unit(const std::string& header) {
   for (const auto& [open, close] : {std::pair('[', ']'), std::pair('(', ')')}) {
     const std::size_t a = header.find(open), b = header.find(close, a == std::string::npos ? 0 : a);
     if (a == std::string::npos || b == std::string::npos) continue;
-    const std::string unit = plain_unit(trimmed(header.substr(a + 1, b - a - 1)));
-    if (known_unit(unit)) return {trimmed(header.substr(0, a)), unit};
+    const std::string unit =
+        plain_unit(std::string(trimmed(std::string_view(header).substr(a + 1, b - a - 1))));
+    if (known_unit(unit))
+      return {std::string(trimmed(std::string_view(header).substr(0, a))), unit};
   }
   // name_unit, where a slash is written as an underscore: velocity_m_s, omega_rad_s
   for (std::size_t at = header.find('_'); at != std::string::npos; at = header.find('_', at + 1)) {
@@ -187,7 +215,7 @@ NameAndUnit name_and_unit(const std::string& header) {
 
 Signal read_signal(const std::string& where) {
   const auto [file, wanted] = split(where);
-  Signal s = is_csv(file) ? select(read_table(file), wanted) : read_mme_channel(file, wanted);
+  Signal s = is_csv(file) ? select(Table(file), wanted) : read_mme_channel(file, wanted);
   if (s.size() < 2)
     throw SignalError("empty-signal", fmt::format("{} holds {} samples", where, s.size()),
                       "A curve needs at least two");
@@ -197,7 +225,7 @@ Signal read_signal(const std::string& where) {
 std::vector<Signal> read_all_signals(const std::string& file) {
   if (!fs::exists(file)) throw SignalError("no-such-file", "cannot find " + file, "Check the path");
   if (!is_csv(file)) return read_mme_test(file);
-  const Table t = read_table(file);
+  const Table t(file);
   std::vector<Signal> out;
   for (std::size_t c = 1; c < t.names.size(); ++c) out.push_back(make_signal(t, 0, int(c)));
   return out;
