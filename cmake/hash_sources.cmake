@@ -1,5 +1,6 @@
 # Writes a C++ file OUTPUT that defines study::engine_version: a SHA-256 over the names and contents of the sources in
-# the folders LAYERS (separated by commas) of ROOT. Whatever a run computes with is in there.
+# the folders LAYERS (separated by commas) of ROOT, and over the tables in DATA from which bodies are made. Whatever a
+# run computes with is in there.
 string(REPLACE "," ";" layers "${LAYERS}")
 set(sums "")
 foreach(layer ${layers})
@@ -10,6 +11,12 @@ foreach(layer ${layers})
     file(SHA256 ${ROOT}/${path} sum)
     string(APPEND sums "${path} ${sum}\n")
   endforeach()
+endforeach()
+file(GLOB_RECURSE tables RELATIVE ${DATA} ${DATA}/*.csv)
+list(SORT tables)
+foreach(path ${tables})
+  file(SHA256 ${DATA}/${path} sum)
+  string(APPEND sums "data/${path} ${sum}\n")
 endforeach()
 string(SHA256 engine "${sums}")
 set(text "// made by cmake/hash_sources.cmake\n#include \"study/deck_source.h\"\n\nnamespace fabrica::study {\n")

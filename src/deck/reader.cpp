@@ -185,8 +185,10 @@ class DeckReader {
     const std::string& k = block.keyword;
     if (k == "INCLUDE_PATH" || k == "INCLUDE_PATH_RELATIVE") {
       while (block.next())
-        if (const std::string name = name_line(block); !name.empty())
+        if (const std::string name = name_line(block); !name.empty()) {
           paths_.push_back(k == "INCLUDE_PATH" ? fs::path(name) : main_folder_ / name);
+          if (k != "INCLUDE_PATH") relative_paths_.push_back(name);
+        }
       return true;
     }
     if (k == "INCLUDE") {
@@ -291,7 +293,8 @@ class DeckReader {
     context_.parameters.close_scope();
   }
 
-  // beside the including files from the innermost outwards, then in the search paths
+  // beside the including files from the innermost outwards, then in the search paths; those of
+  // *INCLUDE_PATH_RELATIVE start at the main file, then at each file on the way to here
   bool locate(const std::string& name, fs::path& found) const {
     std::error_code e;
     const auto is_file = [&](const fs::path& p) { return fs::is_regular_file(p, e); };
@@ -303,11 +306,16 @@ class DeckReader {
     for (auto folder = folders_.rbegin(); folder != folders_.rend(); ++folder)
       for (const fs::path& path : paths_)
         if (is_file(found = *folder / path / name)) return true;
+    // a deck may itself be included, as by the main file of a case: then what it calls the main
+    // folder is its own
+    for (const fs::path& folder : folders_)
+      for (const fs::path& path : relative_paths_)
+        if (is_file(found = folder / path / name)) return true;
     return false;
   }
 
   Context context_;
-  std::vector<fs::path> paths_, folders_;
+  std::vector<fs::path> paths_, folders_, relative_paths_;
   std::vector<std::string> open_;  // files being read, outermost first
   fs::path main_folder_;
 };

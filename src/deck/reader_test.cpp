@@ -1,8 +1,11 @@
 #include "deck/reader.h"
 
 #include <doctest/doctest.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <sstream>
 #include <string>
 
@@ -103,6 +106,28 @@ TEST_CASE("reader: one deck, many forms") {
   REQUIRE(model->solids.size() == 1);
   REQUIRE(model->materials.size() == 1);
   CHECK(model->materials[0].density == 7.83e-6);
+}
+
+// a/b/deck.k names ../shared from its own folder, and its include names it again from there
+TEST_CASE("reader: *INCLUDE_PATH_RELATIVE starts at the main file, also where that is included") {
+  namespace fs = std::filesystem;
+  const fs::path root =
+      fs::temp_directory_path() / ("fabrica_include_" + std::to_string(::getpid()));
+  for (const char* folder : {"a/b", "a/shared", "out"}) fs::create_directories(root / folder);
+  const auto write = [&](const char* file, const std::string& text) {
+    std::ofstream(root / file) << "*KEYWORD\n" << text << "*END\n";
+  };
+  write("a/b/deck.k", "*INCLUDE_PATH_RELATIVE\n../shared\n*INCLUDE\nnodes.k\n");
+  write("a/shared/nodes.k", "*NODE\n1,0.0,0.0,0.0\n");
+  write("out/main.k", "*INCLUDE\n" + (root / "a/b/deck.k").string() + "\n");
+  for (const char* file : {"a/b/deck.k", "out/main.k"}) {
+    Diagnostics diagnostics;
+    read_deck((root / file).string(), diagnostics);
+    CHECK(fs::equivalent(diagnostics.files.back(), root / "a/shared/nodes.k"));
+    for (const Diagnostic& d : diagnostics.list())
+      CHECK(diagnostics.format(d).find("search paths") == std::string::npos);
+  }
+  fs::remove_all(root);
 }
 
 TEST_CASE("writer: reading back gives the same bits, in short and in long format") {

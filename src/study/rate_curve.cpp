@@ -24,6 +24,19 @@ double step_of(const Curve& c) {
 
 Curve curve_of(const Signal& s) { return {s.x, s.y}; }
 
+// the parts of a rating with its corridors, which both methods name alike
+template <class Rated>
+Rating result(std::vector<std::pair<std::string, double>> parts, double low, double high,
+              const Rated& c) {
+  return {std::move(parts),
+          low,
+          high,
+          curve_of(c.inner_low),
+          curve_of(c.inner_high),
+          curve_of(c.outer_low),
+          curve_of(c.outer_high)};
+}
+
 }  // namespace
 
 Rating rate_curve(const std::string& method, const Curve& reference, const Curve& model,
@@ -46,31 +59,21 @@ Rating rate_curve(const std::string& method, const Curve& reference, const Curve
     CoraOptions options;
     options.t_min = low, options.t_max = r.x.back();
     const CoraRating c = cora(r, m, options);
-    return {{{"corridor", c.corridor},
-             {"cross-correlation", c.progression},
-             {"size", c.size},
-             {"phase", c.phase},
-             {"correlation", c.correlation},
-             {"total", c.total}},
-            low,
-            high,
-            curve_of(c.inner_low),
-            curve_of(c.inner_high),
-            curve_of(c.outer_low),
-            curve_of(c.outer_high)};
+    return result({{"corridor", c.corridor},
+                   {"cross-correlation", c.progression},
+                   {"size", c.size},
+                   {"phase", c.phase},
+                   {"correlation", c.correlation},
+                   {"total", c.total}},
+                  low, high, c);
   }
   const Iso18571Rating c = iso18571(r, m);
-  return {{{"corridor", c.corridor},
-           {"phase", c.phase},
-           {"magnitude", c.magnitude},
-           {"slope", c.slope},
-           {"total", c.total}},
-          low,
-          high,
-          curve_of(c.inner_low),
-          curve_of(c.inner_high),
-          curve_of(c.outer_low),
-          curve_of(c.outer_high)};
+  return result({{"corridor", c.corridor},
+                 {"phase", c.phase},
+                 {"magnitude", c.magnitude},
+                 {"slope", c.slope},
+                 {"total", c.total}},
+                low, high, c);
 }
 
 std::string rating_word(const std::string& method, double total) {
