@@ -93,7 +93,8 @@ void Resolver::run() {
   index_parts();
   resolve_sets();
   move_nodes();
-  read_all({{"DEFORMABLE_TO_RIGID", &R::read_deformable_to_rigid}});
+  read_all({{"CONTROL_TIMESTEP", &R::read_selective_mass},
+            {"DEFORMABLE_TO_RIGID", &R::read_deformable_to_rigid}});
   check_parts();
 
   // what acts on the mesh

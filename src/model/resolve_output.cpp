@@ -44,10 +44,9 @@ void Resolver::read_timestep(const Card& card) {
   c.mass_scaling_first_cycle_only = card.integer("ms1st") == 1;
   c.time_step_curve = curve(card, "lctm");
   c.erode = card.integer("erode") != 0;
-  read_selective_mass(card);
 }
 
-// IMSCL = 1: all parts; negative: a part set
+// IMSCL = 1: all parts; negative: a part set, so that sets come first
 void Resolver::read_selective_mass(const Card& card) {
   Controls& c = model_.controls;
   const int option = card.integer("imscl");

@@ -143,7 +143,8 @@ double SelectiveMass::sum_of_chunks() const {
   return sum;
 }
 
-// first residual of (2) and search direction; reference: what the force measures like it
+// first residual of (2) and search direction; reference: what the force, and the inertia of known
+// accelerations, measure like it
 double SelectiveMass::start(const State& state, Team& team, double& reference) {
   const std::size_t n = node_.size();
   for_chunks(team, n, [&](int, int first, int last) {
@@ -160,6 +161,9 @@ double SelectiveMass::start(const State& state, Team& team, double& reference) {
       for (int j = 0; j < known.count; ++j) a_[i] += known.value[j] * known.direction[j];
     }
   });
+  double driven = 0;
+  for (const Known& k : known_)
+    for (int j = 0; j < k.count; ++j) driven += diagonal_[k.local] * k.value[j] * k.value[j];
   element_means(a_, team);
   for_chunks(team, n, [&](int c, int first, int last) {
     for (int i = first; i < last; ++i) product_[i] = state.force[node_[i]];
@@ -171,7 +175,7 @@ double SelectiveMass::start(const State& state, Team& team, double& reference) {
     }
     partial_[c] = sum;
   });
-  reference = sum_of_chunks();
+  reference = sum_of_chunks() + driven;
   for_chunks(team, n, [&](int c, int first, int last) {
     hold(first, last, residual_);
     double sum = 0;
@@ -219,6 +223,8 @@ void SelectiveMass::correct(State& state, const NodeConstraints& constraints, Te
   take_known(state, constraints);
   double reference = 0;
   double rho = start(state, team, reference);
+  // nothing moves or is pushed: the solution is zero, not what was left of the last step
+  if (reference == 0) std::fill(a_.begin(), a_.end(), Vec3d{0, 0, 0}), rho = 0;
   const double enough = tolerance * tolerance * reference;
   int count = 0;
   for (; rho > enough && count < most_iterations; ++count) rho = iterate(rho, team);
