@@ -1,6 +1,5 @@
 // What holds or drives rigid bodies: constraint codes, supports of their nodes, prescribed motions.
 #include <algorithm>
-#include <array>
 #include <string>
 
 #include "solver/motion_target.h"
@@ -11,12 +10,11 @@ namespace fabrica {
 // Constraint codes of MAT_RIGID and NRB_SPC as conditions of zero velocity.
 void RigidBodies::code_conditions(int cmo, int con1, int con2, int local_system, int local,
                                   std::vector<GroundCondition>& out) const {
-  static constexpr std::array<int, 8> masks{0, 1, 2, 4, 3, 6, 5, 7};  // none x y z xy yz zx xyz
   int translation = 0, rotation = 0;
   Mat3d axes = identity3<double>();
   if (cmo > 0) {
-    translation = con1 >= 0 && con1 <= 7 ? masks[con1] : 0;
-    rotation = con2 >= 0 && con2 <= 7 ? masks[con2] : 0;
+    translation = constrained_axes(con1);
+    rotation = constrained_axes(con2);
   } else if (cmo < 0) {
     // six decimal digits: x y z rx ry rz
     for (int k = 0, digits = con2; k < 6; ++k, digits /= 10)

@@ -31,10 +31,14 @@ Vec3d carried_direction(const Model& model, const State& state, const Vec3d& dir
   return transpose(axes_now(model.coordinate_systems[system], state)) * direction;
 }
 
-void for_each_support(const Model& model, const std::function<void(int, const NodeSupport&)>& fn) {
+int constrained_axes(int code) {
   static constexpr std::array<int, 8> masks{0, 1, 2, 4, 3, 6, 5, 7};  // none x y z xy yz zx xyz
+  return code >= 0 && code <= 7 ? masks[code] : 0;
+}
+
+void for_each_support(const Model& model, const std::function<void(int, const NodeSupport&)>& fn) {
   const auto mask = [&](const auto& codes, int n) {
-    return n < int(codes.size()) ? masks[codes[n] & 7] : 0;
+    return n < int(codes.size()) ? constrained_axes(codes[n]) : 0;
   };
   for (int n = 0; n < model.nodes.size(); ++n) {
     const int t = mask(model.nodes.translation_code, n), r = mask(model.nodes.rotation_code, n);

@@ -15,6 +15,9 @@ struct NodeSupport {
   double birth = 0, death = 1e28;
 };
 
+// Which of x, y, z (bits 0, 1, 2) a code 0 to 7 of *NODE, *MAT_RIGID and NRB_SPC holds.
+int constrained_axes(int code);
+
 // Calls fn(node, support) for every support, codes of nodes first, in the order of the deck.
 void for_each_support(const Model& model, const std::function<void(int, const NodeSupport&)>& fn);
 
