@@ -1,11 +1,13 @@
 #include "app/injury.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "app/injury_strains.h"
 #include "injury/measures.h"
@@ -60,6 +62,18 @@ std::string located(const InjuryCommand& c, const std::string& where) {
     if (const fs::path folder = histories(input); !folder.empty() && colon != std::string::npos)
       if (const fs::path file = folder / (where.substr(0, colon) + ".csv"); fs::exists(file))
         return file.string() + where.substr(colon);
+  if (colon == std::string::npos || fs::exists(where.substr(0, colon))) return where;
+  for (const std::string& input : c.inputs) {
+    if (histories(input).empty()) continue;
+    std::set<std::string> there;
+    for (const auto& entry : fs::directory_iterator(histories(input)))
+      there.insert(entry.path().stem().string());
+    throw SignalError(
+        "no-such-channel",
+        "'" + where + "' is no file, and " + input + " has no database " + where.substr(0, colon),
+        fmt::format("It has: {}. Ask for others in the deck (*DATABASE_...)",
+                    there.empty() ? "none" : fmt::format("{}", fmt::join(there, ", "))));
+  }
   return where;
 }
 

@@ -9,8 +9,6 @@
 namespace fabrica {
 namespace {
 
-const char* not_confirmed = "coefficients not confirmed";
-
 Finding of_nij(const Subject& s, const Channels& c) {
   const Signal moment =
       occipital_moment(filtered(c, "neck.my", 600), filtered(c, "neck.fx", 600), 1e-3 * s.neck_arm);
@@ -22,10 +20,8 @@ Finding of_nij(const Subject& s, const Channels& c) {
                       "compression-extension {:.3f}",
                       s.neck, n.tension_flexion, n.tension_extension, n.compression_flexion,
                       n.compression_extension),
-          {{"AIS2+", logistic(-2.054 + 1.195 * v),
-            std::string("Eppinger et al. 1999; ") + not_confirmed},
-           {"AIS3+", logistic(-3.227 + 1.969 * v),
-            std::string("Eppinger et al. 1999; ") + not_confirmed}}};
+          {{"AIS2+", logistic(-2.054 + 1.195 * v), "Eppinger et al. 1999"},
+           {"AIS3+", logistic(-3.227 + 1.969 * v), "Eppinger et al. 1999"}}};
 }
 
 double deflection_mm(const Channels& c) {
@@ -36,10 +32,9 @@ Finding of_deflection(const Subject&, const Channels& c) {
   const double d = deflection_mm(c);
   return {d,
           "",
-          {{"AIS3+ Hybrid III", logistic(-3.7124 + 0.0475 * d),
-            std::string("Eppinger et al. 1999; ") + not_confirmed},
+          {{"AIS3+ Hybrid III", logistic(-3.7124 + 0.0475 * d), "Eppinger et al. 1999"},
            {"AIS3+ Hybrid III, NCAP", logistic(-10.5456 + 1.568 * std::pow(d, 0.4612)),
-            std::string("NHTSA NCAP 2008; ") + not_confirmed}}};
+            "NHTSA NCAP 2008"}}};
 }
 
 // logit = b_0 + b_age age + b_c c: fitted to 90 of the 93 cadaver tests of Kent and Patrie 2005
@@ -85,7 +80,7 @@ template <bool left>
 Finding of_femur(const Subject&, const Channels& c) {
   const double f = largest_compression(
       in_unit(filtered(c, left ? "femur_left.fz" : "femur_right.fz", 600), "kN"));
-  const std::string source = std::string("Eppinger et al. 1999; ") + not_confirmed;
+  const char* source = "Kuppa et al. 2001, Stapp 45";
   return {f,
           "",
           {{"AIS2+", logistic(-5.795 + 0.5196 * f), source},

@@ -30,16 +30,14 @@ Finding of_hic(const Hic& h) {
 Finding hic15(const Subject&, const Channels& c) {
   Finding f = of_hic(hic(filtered_resultant(c, "head", 1000), 0.015));
   const double h = f.value;
-  const char *read = "NHTSA 1995, expanded Prasad-Mertz curves",
-             *unconfirmed = "the same; coefficients not confirmed";
+  const char* source = "NHTSA 1995, expanded Prasad-Mertz curves";
   if (h <= 0) return f;
-  f.risks = {{"AIS1+", logistic(-(1.54 + 200 / h - 0.00650 * h)), read},
-             {"AIS2+", logistic(-(2.49 + 200 / h - 0.00483 * h)), unconfirmed},
-             {"AIS3+", logistic(-(3.39 + 200 / h - 0.00372 * h)), read},
-             {"AIS4+", logistic(-(4.90 + 200 / h - 0.00351 * h)), unconfirmed},
-             {"AIS5+", logistic(-(7.82 + 200 / h - 0.00429 * h)), unconfirmed},
-             {"skull fracture AIS2+", normal((std::log(h) - 6.96352) / 0.84664),
-              "Mertz 1997; not confirmed"}};
+  f.risks = {{"AIS1+", logistic(-(1.54 + 200 / h - 0.00650 * h)), source},
+             {"AIS2+", logistic(-(2.49 + 200 / h - 0.00483 * h)), source},
+             {"AIS3+", logistic(-(3.39 + 200 / h - 0.00372 * h)), source},
+             {"AIS4+", logistic(-(4.90 + 200 / h - 0.00351 * h)), source},
+             {"AIS5+", logistic(-(7.82 + 200 / h - 0.00429 * h)), source},
+             {"skull fracture AIS2+", normal((std::log(h) - 6.96352) / 0.84664), "Mertz 1997"}};
   return f;
 }
 Finding hic36(const Subject&, const Channels& c) {
@@ -53,15 +51,14 @@ Finding head_clip(const Subject&, const Channels& c) {
 Finding of_bric(const Subject&, const Channels& c) {
   const double b =
       bric({filtered(c, "head.wx", 60), filtered(c, "head.wy", 60), filtered(c, "head.wz", 60)});
-  const char* source = "Takhounts et al. 2013, Stapp 57 (CSDM and MPS)";
-  const char* unconfirmed = "the same; scale not confirmed";
+  const char* source = "Takhounts et al. 2013, Stapp 57 (MPS)";
   return {b,
           "",
           {{"AIS1+", weibull(b, 0.120, 2.84), source},
            {"AIS2+", weibull(b, 0.602, 2.84), source},
-           {"AIS3+", weibull(b, 0.987, 2.84), unconfirmed},
-           {"AIS4+", weibull(b, 1.204, 2.84), unconfirmed},
-           {"AIS5+", weibull(b, 1.252, 2.84), unconfirmed}}};
+           {"AIS3+", weibull(b, 0.987, 2.84), source},
+           {"AIS4+", weibull(b, 1.204, 2.84), source},
+           {"AIS5+", weibull(b, 1.252, 2.84), source}}};
 }
 
 Finding of_damage(const Subject&, const Channels& c) {

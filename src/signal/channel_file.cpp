@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string_view>
@@ -116,7 +117,7 @@ double number(const Table& t, std::size_t row, int column) {
   if (begin != end && *begin == '+') ++begin;
   double value = 0;
   const auto [stop, error] = std::from_chars(begin, end, value);
-  if (error != std::errc() || stop != end)
+  if (error != std::errc() || stop != end || !std::isfinite(value))
     throw SignalError(
         "not-a-number",
         fmt::format("{}:{}: '{}' in column '{}'", t.path, t.lines[row], cell, t.names[column]),

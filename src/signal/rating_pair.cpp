@@ -45,12 +45,14 @@ RatingPair rating_pair(const Signal& reference, const Signal& given, std::option
 
   const double step = sample_interval(reference);
   if (!same_base(reference, signal))
-    throw SignalError("different-time-base",
-                      fmt::format("'{}' has {} samples from {} to {}, '{}' has {} from {} to {} {}",
-                                  reference.name, reference.size(), reference.x.front(),
-                                  reference.x.back(), signal.name, signal.size(), signal.x.front(),
-                                  signal.x.back(), reference.x_unit),
-                      "Resample both to one step and interval (fabrica rate --resample STEP)");
+    throw SignalError(
+        "different-time-base",
+        fmt::format(
+            "the reference '{}' has {} samples from {} to {}, the signal '{}' has {} from {} "
+            "to {} {}",
+            reference.name, reference.size(), reference.x.front(), reference.x.back(), signal.name,
+            signal.size(), signal.x.front(), signal.x.back(), reference.x_unit),
+        "Resample both to one step and interval (fabrica rate --resample STEP)");
   if (!deviation.empty() && deviation.size() != reference.size())
     throw SignalError("ragged-signal",
                       fmt::format("{} deviations for {} samples of '{}'", deviation.size(),

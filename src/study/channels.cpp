@@ -116,14 +116,25 @@ std::vector<double> Channels::abscissa(const std::string& text) {
   return table_of(at == std::string::npos ? text : text.substr(0, at)).table.columns[0];
 }
 
+namespace {
+
+std::string unit_in(const std::string& header) {
+  const std::size_t open = header.find('['), close = header.find(']');
+  if (open != std::string::npos && close != std::string::npos && open < close)
+    return header.substr(open + 1, close - open - 1);
+  const std::size_t bar = header.rfind('_');
+  return bar == std::string::npos ? "" : header.substr(bar + 1);
+}
+
+}  // namespace
+
 std::string Channels::unit(const std::string& text) {
   const CsvTable& table = table_of(text).table;
-  const std::string& name = table.names[find_column(table, column_of(text), text)];
-  const std::size_t open = name.find('['), close = name.find(']');
-  if (open != std::string::npos && close != std::string::npos && open < close)
-    return name.substr(open + 1, close - open - 1);
-  const std::size_t bar = name.rfind('_');
-  return bar == std::string::npos ? "" : name.substr(bar + 1);
+  return unit_in(table.names[find_column(table, column_of(text), text)]);
+}
+
+std::string Channels::abscissa_unit(const std::string& text) {
+  return unit_in(table_of(text).table.names[0]);
 }
 
 const std::map<std::string, std::string>& Channels::head(const std::string& text) {

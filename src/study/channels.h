@@ -29,6 +29,8 @@ class Channels {
   std::vector<double> abscissa(const std::string& text);
   // The unit in the brackets of a header, "force [kN]" or "force_kN", empty if there is none.
   std::string unit(const std::string& text);
+  // The unit of the first column of the table that `text` names.
+  std::string abscissa_unit(const std::string& text);
   // The comment lines of the file that `text` names.
   const std::map<std::string, std::string>& head(const std::string& text);
   // the column that is meant: equal, or the only one that is `name` followed by a unit

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "body/tables.h"
+#include "signal/units.h"
 #include "study/error.h"
 #include "study/rate_curve.h"
 
@@ -70,6 +71,19 @@ void need_unit(const SignalSpec& s, Channels& channels, const Case& c) {
     throw StudyError(c.file, s.line, "signal.unit",
                      "is '" + s.unit + "', the reference has '" + unit + "'",
                      "Give the reference's unit and the scale that leads to it");
+}
+
+// the abscissa of the reference in the unit of the model's, where both are named
+void need_abscissa_unit(const SignalSpec& s, Channels& channels, const Case& c) {
+  const std::string wanted = s.x.empty() ? c.time_unit : s.x_unit;
+  const std::string unit = s.reference_x.empty()
+                               ? channels.abscissa_unit(s.reference)
+                               : channels.unit(table_name_of(s.reference) + ":" + s.reference_x);
+  if (!wanted.empty() && unit != wanted && known_unit(unit))
+    throw StudyError(c.file, s.line, "signal.reference",
+                     "'" + s.reference + "' is given over " + unit + ", the model over " + wanted,
+                     s.x.empty() ? "Convert the reference, or correct time_unit of the case"
+                                 : "Convert the reference, or give x_unit and x_scale");
 }
 
 void read_reference(const SignalSpec& s, Channels& channels, const Case& c, SignalResult& r) {
@@ -140,6 +154,7 @@ SignalResult compare_signal(const SignalSpec& s, Channels& channels, const Case&
   read_reference(s, channels, c, r);
   if (s.rating.empty()) return r;
   need_unit(s, channels, c);
+  need_abscissa_unit(s, channels, c);
   rate(s, c.time_unit, r);
   return r;
 }

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "study/compare.h"
 #include "study/error.h"
 #include "study/fit.h"
 
@@ -74,6 +75,21 @@ TEST_CASE("a quotient, a unit, and the head of a file are found") {
   CHECK(channels.unit("ref.csv:h_mm") == "mm");
   CHECK(channels.head("ref.csv:g").at("provenance") == "digitised by hand");
   CHECK(std::isnan(channels.column("ref.csv:g")[1]));
+}
+
+TEST_CASE("a reference over another unit of time than the model's is not rated") {
+  const Result r;
+  std::ofstream(r.path / "curve.csv") << "time [ms],g [kN]\n0,0\n1,2\n2,-6\n3,4\n";
+  Channels channels(r.path.string(), r.path.string());
+  SignalSpec s;
+  s.name = "force", s.model = "a:f:1", s.unit = "kN", s.reference = "curve.csv:g";
+  s.rating = {"cora"};
+  Case c;
+  c.file = "case.toml", c.time_unit = "s";
+  CHECK_THROWS_WITH_AS(compare_signal(s, channels, c),
+                       doctest::Contains("is given over ms, the model over s"), StudyError);
+  c.time_unit = "ms";
+  CHECK_NOTHROW(compare_signal(s, channels, c));
 }
 
 TEST_CASE("what is not in a result is named, and what there is instead") {
