@@ -86,6 +86,47 @@ TEST_CASE("without orientation (ORIEN=3) shells of the old kinds keep the side o
   CHECK(turned == 0);
 }
 
+// A segment's corners say where its outside is, also where the shell under it is numbered the other
+// way. The plate comes to a stop in front of a set whose normals face it; behind them it would lie
+// in the surface from the start, which is allowed.
+TEST_CASE(
+    "segments of a set keep the outside of their own corners on shells turned the other way") {
+  for (const bool triangles : {false, true}) {
+    Plates rig(ContactKind::surface_to_surface, 0.05);
+    rig.contact().oriented = true;
+    rig.model.segment_sets.resize(2);
+    const auto& x = rig.model.nodes.x;
+    for (int e = 0; e < rig.model.shells.size(); ++e) {
+      auto& n = rig.model.shells.node[e];
+      if (triangles) n[3] = n[2];
+      const int part = rig.model.shells.part[e];
+      std::array<int, 4> segment{n[0], n[1], n[2], n[3]};
+      // the lower plate's outside is up, the upper one's down
+      if (part == 1) segment = {n[0], n[2], n[1], n[1]};
+      if (part == 1 && !triangles) segment = {n[0], n[3], n[2], n[1]};
+      rig.model.segment_sets[std::size_t(part)].segments.push_back(segment);
+      // shells of both plates look away from each other
+      if (part == 0) std::swap(n[1], n[triangles ? 2 : 3]);
+      if (triangles) n[3] = n[2];
+    }
+    rig.contact().a.kind = rig.contact().b.kind = ContactSide::Kind::segments;
+    rig.contact().a.set = 1, rig.contact().b.set = 0;
+    rig.start(0.01);
+    CHECK(rig.contacts->passes()[0]->initial_penetrations().empty());
+    for (const auto& pass : rig.contacts->passes())
+      for (const ContactSegment& s : pass->reference().segments) {
+        const Vec3d d = x[s.node[s.triangle ? 1 : 2]] - x[s.node[0]];
+        const Vec3d b = s.triangle ? x[s.node[2]] - x[s.node[0]] : x[s.node[3]] - x[s.node[1]];
+        CHECK(cross(d, b).z * (s.part == 0 ? 1 : -1) > 0);
+      }
+    const auto f = forces_after(rig, rig.upper, {0, 0, -0.1});
+    double up = 0;
+    for (const int n : rig.upper) up += f[std::size_t(n)].z;
+    CHECK(up > 0);
+    CHECK(norm(total(f)) < 1e-10 * up);
+  }
+}
+
 // |F_t| = (mu_a + mu_b)/2 F_n once it slides
 TEST_CASE("FS=-1 takes the mean of the friction of the two parts") {
   for (int soft : {1, 2}) {

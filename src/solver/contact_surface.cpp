@@ -209,7 +209,8 @@ void SurfaceSource::orient(ContactSegment& g, const Contact& contact) const {
   if (contact.oriented) g.limit = contact.penmax > 0 ? contact.penmax : std::sqrt(g.area);
 }
 
-// a segment of a set takes after the shell or the exterior face that it lies on
+// A segment of a set takes after the shell or the exterior face that it lies on. The outside of a
+// shell's segment is the one of the segment's own corners, which may run against the shell's.
 void SurfaceSource::add_set(const SegmentSet& set, const Contact& contact, bool reference,
                             ContactSurface& s) const {
   std::map<std::array<int, 4>, int> shells;
@@ -225,6 +226,9 @@ void SurfaceSource::add_set(const SegmentSet& set, const Contact& contact, bool 
     const auto shell = shells.find(key);
     if (shell != shells.end()) {
       add_shell(shell->second, contact, reference, s);
+      ContactSegment& g = s.segments.back();
+      std::copy_n(corners.node, corners.count, g.node);
+      if (g.triangle) g.node[3] = g.node[2];
     } else if (face != faces_.end() && face->key == key) {
       add_solid_face(*face, contact, scale, s);
     } else {
