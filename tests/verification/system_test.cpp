@@ -144,3 +144,34 @@ TEST_CASE("V15: a mixed model has the same bits for any thread count and over a 
   CHECK(again.simulation->state_hash() == hash[0]);
   std::filesystem::remove(path);
 }
+
+// A light brick under a force of 1e-9 of what would move a corner by its size in a step, beside one
+// node of 2000 of its corners: m v = F t all the same. The resolution is 1e-12 of that force.
+TEST_CASE("V09: a heavy node does not swallow small forces on light ones") {
+  const double rho = 7.85e-6, young = 200, step = 0.1 * std::sqrt(rho / young);
+  const double force = 1e-9 * (rho / 8) / (step * step);
+  for (const double heavy : {1.0, 2000.0, 1e9}) {
+    Deck deck;
+    deck.end(1e3).curve(1, {{0, 1}, {1e9, 1}}).constant_step(step, 2);
+    deck.key("SECTION_SOLID").card(1, 1);
+    deck.key("MAT_ELASTIC").card(1, rho, young, 0.0);
+    deck.part(1, 1, 1);
+    const Grid g = bricks(
+        deck, 1, 1, 1, [](int i, int j, int k) { return Vec3d(i, j, k); },
+        [](int, int, int) { return 0; }, 1);
+    deck.key("LOAD_NODE_POINT");
+    for (const int id : g.ids) deck.card(id, 1, 1, force);
+    deck.mass(deck.node({5, 0, 0}), heavy * rho / 8);
+    Run run(deck);
+    bool warned = false;
+    for (const Diagnostic& d : run.diagnostics.list()) warned |= d.name == "heavy-node";
+    CHECK(warned == (heavy > 1e6));
+    if (warned) continue;
+    for (int i = 0; i < 100; ++i) REQUIRE(run.step());
+    double momentum = 0;
+    for (const int id : g.ids) momentum += rho / 8 * run.v(id).x;
+    const double expected = 8 * force * (run.time() - 0.5 * run.state().dt);
+    report("heavy node: m v / F t - 1", {heavy, momentum / expected - 1});
+    CHECK(momentum == doctest::Approx(expected).epsilon(5e-3));
+  }
+}
