@@ -147,7 +147,7 @@ void bone_rows(Rows& rows, const Body& body, Resolution resolution) {
   }
   const double limit = resolution == Resolution::coarse ? 1.5 : 0.8;
   rows.add("volume of a bone against its table, largest difference",
-           fmt::format("{:.1f} % ({})", 100 * volume, worst_volume), "within 10 %", volume <= 0.10);
+           fmt::format("{:.1f} % ({})", 100 * volume, worst_volume), "within 5 %", volume <= 0.05);
   rows.add("surface of a bone against its table, largest mean error",
            fmt::format("{:.2f} mm ({})", error, worst_error), fmt::format("at most {:g} mm", limit),
            error <= limit);
@@ -163,7 +163,10 @@ void joint_rows(Rows& rows, const Body& body) {
            fmt::format("{}, {:.2f} mm ({}){}", clear.left.size(), std::max(0.0, -clear.least_gap),
                        clear.least_gap_pair, pairs),
            "0", clear.left.empty());
-  rows.add("farthest that a bone's surface gave way",
+  rows.add("farthest that a bone was moved whole, with what hangs on it",
+           fmt::format("{:.2f} mm ({})", clear.whole_shift, clear.whole_shift_bone), "reported",
+           true, false);
+  rows.add("farthest that a node gave way after that",
            fmt::format("{:.2f} mm ({})", clear.largest_shift, clear.largest_shift_bone), "reported",
            true, false);
   const std::vector<std::string> alone = unconnected(body.bones, body.between);
@@ -233,7 +236,7 @@ std::vector<Measure> measure_body(const Body& body, const AssembledBody& assembl
     rows.add(
         "initial penetration of contacts",
         fmt::format("{:.2f} mm, {} nodes", outside.largest_penetration, outside.penetrating_nodes),
-        "at most 0.1 mm", outside.largest_penetration <= 0.1);
+        "at most 0.05 mm", outside.largest_penetration <= 0.05);
     rows.add("nodes of ties that find no surface", fmt::format("{}", outside.untied_nodes), "0",
              outside.untied_nodes == 0);
   }

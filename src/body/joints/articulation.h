@@ -30,19 +30,22 @@ std::vector<Articulation> articulations(const std::vector<PlacedBone>& bones);
 double wanted_gap(const Articulation& joint);
 
 struct ClearanceReport {
-  double largest_shift = 0;  // [mm] of a surface node
+  double whole_shift = 0;  // [mm] largest by which a bone was moved as a whole
+  std::string whole_shift_bone;
+  double largest_shift = 0;  // [mm] of a node, after that
   std::string largest_shift_bone;
   double least_gap = 0;  // [mm] that is left between any two bones
   std::string least_gap_pair;
-  std::vector<std::string> left;     // pairs that still overlap, joined ones apart
+  std::vector<std::string> left;     // pairs that still overlap
   double least_scaled_jacobian = 1;  // of the bricks of the bones that moved
   std::string least_scaled_jacobian_bone;
 };
 
-// Moves the surface nodes of bones that stand nearer than the wanted gap (0.2 mm where no joint is)
-// apart, half each, along the normal of the nearer face; the nodes inside follow. Changes nodes and
-// mesh.nodes. A node that would turn a brick over stays and the gap left is reported. Bones of the
-// two sides that mirror each other before do so exactly after.
+// Clears bones that stand nearer to each other than the wanted gap (0.2 mm where no joint is, 0.05
+// where they are tied): first groups of them move whole (shift_bones.h), then they are pressed
+// apart as elastic bodies (elastic.h), then the worst bricks are mended (mesh/polish.h). Changes
+// nodes, placements and mesh.nodes; what is left is reported. Bones of the two sides that mirror
+// each other before do so exactly after.
 ClearanceReport clear_bones(std::vector<PlacedBone>& bones);
 
 }  // namespace fabrica::body

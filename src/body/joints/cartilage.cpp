@@ -18,9 +18,10 @@ namespace fabrica::body {
 
 namespace {
 
-constexpr double contact_gap = 0.1;   // [mm] left between layers of cartilage
-constexpr double thinnest = 0.15;     // [mm] of a layer
-constexpr double capsule_length = 8;  // [mm] reference length of capsules without a row
+constexpr double contact_gap = 0.1;      // [mm] left between layers of cartilage
+constexpr double thinnest = 0.15;        // [mm] of a layer
+constexpr double least_jacobian = 0.36;  // of its bricks
+constexpr double capsule_length = 8;     // [mm] reference length of capsules without a row
 
 // faces of one bone that look at another
 struct Patch {
@@ -106,6 +107,26 @@ std::array<PieceNode, 4> ArticulationMaker::quad_of(int index, int quad) const {
   return corners;
 }
 
+// Sharp edges of coarse bones spread over the faces around them: half of each normal is the mean of
+// its neighbours', twice.
+void smooth_normals(const PlacedBone& bone, const Patch& patch, std::map<int, Point>& normals) {
+  for (int pass = 0; pass < 2; ++pass) {
+    std::map<int, Point> sums;
+    for (int q : patch.quads) {
+      const auto& s = bone.mesh.surface[std::size_t(q)];
+      for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t k : {(i + 1) % 4, (i + 3) % 4}) {
+          const Point& n = normals.at(s[k]);
+          sums.try_emplace(s[i], Point{0, 0, 0}).first->second += (1 / norm(n)) * n;
+        }
+    }
+    for (auto& [node, normal] : normals) {
+      const Point& sum = sums.at(node);
+      if (norm(sum) > 1e-6) normal = (1 / norm(normal)) * normal + (1 / norm(sum)) * sum;
+    }
+  }
+}
+
 // One layer of bricks on the patch, towards the other bone; gives its free faces.
 std::vector<std::array<PieceNode, 4>> ArticulationMaker::layer(const Articulation& joint, int index,
                                                                int other, const Patch& patch,
@@ -123,6 +144,7 @@ std::vector<std::array<PieceNode, 4>> ArticulationMaker::layer(const Articulatio
                                 here.nodes[std::size_t(s[2])], here.nodes[std::size_t(s[3])]);
     for (int corner : s) normals.try_emplace(corner, Point{0, 0, 0}).first->second += n;
   }
+  smooth_normals(here, patch, normals);
   PieceBuilder builder(bones_);
   std::map<int, Point> top;
   std::map<int, int> top_node;  // made when a brick needs it
@@ -147,7 +169,8 @@ std::vector<std::array<PieceNode, 4>> ArticulationMaker::layer(const Articulatio
     Corners corners;
     for (std::size_t i = 0; i < 4; ++i)
       corners[i] = here.nodes[std::size_t(s[i])], corners[i + 4] = top[s[i]];
-    if (scaled_jacobian(corners) < 0.2) continue;  // folds at a sharp rim: the bone stays bare
+    if (scaled_jacobian(corners) < least_jacobian)
+      continue;  // folds at a sharp rim: the bone stays bare
     std::array<int, 8> brick;
     for (std::size_t i = 0; i < 4; ++i) {
       if (!top_node.count(s[i])) top_node[s[i]] = builder.own(top[s[i]]);

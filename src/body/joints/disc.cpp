@@ -10,6 +10,7 @@
 #include "body/joints/disc_frame.h"
 #include "body/joints/joint_law.h"
 #include "body/joints/piece_builder.h"
+#include "body/mesh/polish.h"
 #include "body/mesh/quality.h"
 #include "body/tables.h"
 
@@ -64,6 +65,7 @@ class DiscMaker {
   void ring(int number, DiscReport& report);
   void fibres(int ring_piece, int number);
   void ties();
+  void smooth(DiscReport& report);
   void finish(PieceBuilder& builder, const std::string& tissue, const char* law,
               DiscReport& report);
 
@@ -73,7 +75,8 @@ class DiscMaker {
   DiscSpace space_;
   DiscGrid grid_;
   // of the piece made last: its outer columns, counter-clockwise
-  int last_piece_ = -1;
+  int last_piece_ = -1, first_piece_ = 0;
+  std::vector<int> ring_pieces_;
   std::vector<Column> last_columns_;
   std::vector<PieceNode> top_, bottom_;
 };
@@ -161,8 +164,8 @@ void DiscMaker::ring(int number, DiscReport& report) {
     bottom_.push_back(piece_node(builder.piece, last_piece_, column.front()));
     top_.push_back(piece_node(builder.piece, last_piece_, column.back()));
   }
+  ring_pieces_.push_back(last_piece_);
   finish(builder, fmt::format("annulus{}", number), "annulus", report);
-  fibres(last_piece_, number);
 }
 
 // Two fibres cross each outer face of a ring; each stands for half of the fibres of its brick:
@@ -205,13 +208,7 @@ void DiscMaker::finish(PieceBuilder& builder, const std::string& tissue, const c
                        DiscReport& report) {
   const PlacedBone& upper = bones_[std::size_t(row_.upper)];
   Piece& piece = builder.piece;
-  for (const auto& brick : piece.bricks) {
-    Corners corners;
-    for (std::size_t i = 0; i < 8; ++i) corners[i] = builder.at(brick[i]);
-    report.least_scaled_jacobian = std::min(report.least_scaled_jacobian, scaled_jacobian(corners));
-    report.volume += volume_of(corners);
-    ++report.bricks;
-  }
+  report.bricks += int(piece.bricks.size());
   piece.name = fmt::format("{}.mid.disc_{}.{}", name_of(upper.region), row_.name, tissue);
   piece.region = upper.region;
   piece.kind = PieceKind::brick;
@@ -220,6 +217,62 @@ void DiscMaker::finish(PieceBuilder& builder, const std::string& tissue, const c
   piece.bone_b = part_name(bones_[std::size_t(row_.lower)], "");
   piece.source = "discs.csv; " + piece.law.source;
   between_.pieces.push_back(std::move(piece));
+}
+
+// All bricks of the disc at once by the local stage: the nodes on the endplates stay on them, those
+// of the rim on its surface.
+void DiscMaker::smooth(DiscReport& report) {
+  UntangleProblem problem;
+  std::vector<Point> nodes;
+  std::map<std::pair<int, int>, int> index;  // piece and node of the owner
+  const auto number = [&](int piece, int node) {
+    const PieceNode& n = between_.pieces[std::size_t(piece)].nodes[std::size_t(node)];
+    const auto [at, fresh] = index.try_emplace(
+        n.piece >= 0 ? std::pair{n.piece, n.node} : std::pair{piece, node}, int(nodes.size()));
+    if (fresh) nodes.push_back(n.x);
+    return at->second;
+  };
+  for (int p = first_piece_; p < int(between_.pieces.size()); ++p)
+    for (const auto& brick : between_.pieces[std::size_t(p)].bricks) {
+      Brick& b = problem.bricks.emplace_back();
+      for (std::size_t i = 0; i < 8; ++i) b[i] = number(p, brick[i]);
+    }
+  problem.spacing = std::max(space_.mean_height() / grid_.layers, 1.0);
+  const DiscFrame& frame = space_.frame();
+  for (const auto* face : {&top_, &bottom_})
+    for (const PieceNode& n : *face) {
+      const int node = index.at({n.piece, n.node});
+      problem.planes.push_back({node, nodes[std::size_t(node)], frame.normal, 400, false});
+    }
+  for (const Column& column : last_columns_)
+    for (const int n : column) {
+      const int node = index.at({last_piece_, n});
+      const Point d = nodes[std::size_t(node)] - frame.centre;
+      const Point out = d - dot(d, frame.normal) * frame.normal;
+      problem.planes.push_back({node, nodes[std::size_t(node)], (1 / norm(out)) * out, 100, false});
+    }
+  PolishOptions options;
+  options.jacobian = 0.52;
+  options.size = 0.6 * problem.spacing;
+  options.sweeps = 60;
+  polish(problem, nodes, options);
+  report.volume = 0;
+  for (const Brick& brick : problem.bricks) {
+    const Corners corners = corners_of(nodes, brick);
+    report.least_scaled_jacobian = std::min(report.least_scaled_jacobian, scaled_jacobian(corners));
+    report.volume += volume_of(corners);
+  }
+  for (int p = first_piece_; p < int(between_.pieces.size()); ++p) {
+    Piece& piece = between_.pieces[std::size_t(p)];
+    for (std::size_t n = 0; n < piece.nodes.size(); ++n) {
+      PieceNode& node = piece.nodes[n];
+      const auto at =
+          index.find(node.piece >= 0 ? std::pair{node.piece, node.node} : std::pair{p, int(n)});
+      if (at != index.end()) node.x = nodes[std::size_t(at->second)];
+    }
+  }
+  for (auto* face : {&top_, &bottom_})
+    for (PieceNode& n : *face) n.x = nodes[std::size_t(index.at({n.piece, n.node}))];
 }
 
 // The faces of an endplate: those that a node of the disc lies on and their neighbours.
@@ -254,28 +307,41 @@ DiscReport DiscMaker::make() {
   report.name = row_.name;
   report.wanted = row_.wanted, report.table_area = row_.area;
   report.least_scaled_jacobian = 1;
+  first_piece_ = int(between_.pieces.size());
   nucleus(report);
   for (int number = 1; number <= grid_.rings; ++number) ring(number, report);
-  ties();
   constexpr int steps = 360;
   for (int i = 0; i < steps; ++i) {
     const double r = space_.radius(2 * M_PI * i / steps);
     report.area += 0.5 * r * r * 2 * M_PI / steps;
   }
+  smooth(report);
+  for (int number = 1; number <= grid_.rings; ++number)
+    fibres(ring_pieces_[std::size_t(number - 1)], number);
+  ties();
   report.height = report.volume / report.area;
   return report;
 }
 
 // Moves the endplates of one vertebra by `up` at the bottom and `down` at the top, linear between
-// them and nothing behind the body.
+// them and nothing behind the body. What that takes of the body's volume beyond 3 % comes back in
+// its girth.
 void compress_body(PlacedBone& bone, double top, double bottom, double back, double down,
                    double up) {
+  constexpr double free_loss = 0.03;
+  const double loss = (down + up) / (top - bottom);
+  const double girth = std::max(0.0, std::sqrt((1 - free_loss) / (1 - loss)) - 1);
+  double front = back;
+  for (const Point& p : bone.mesh.nodes) front = std::max(front, p.x);
+  const double middle = 0.5 * (front + back);
   for (std::size_t n = 0; n < bone.nodes.size(); ++n) {
     Point& p = bone.mesh.nodes[n];
     const double x = std::clamp((p.x - (back - 3)) / 6, 0.0, 1.0);
     const double behind = x * x * (3 - 2 * x);
     const double t = std::clamp((p.z - bottom) / (top - bottom), 0.0, 1.0);
     p.z += behind * ((1 - t) * up - t * down);
+    p.x += behind * girth * (p.x - middle);
+    p.y += behind * girth * p.y;
     bone.nodes[n] = bone.placement(p);
   }
 }

@@ -94,6 +94,21 @@ TEST_CASE("blocks that overlap are cleared to the gap without turning bricks ove
   CHECK(clear_bones(apart).largest_shift == 0);
 }
 
+// A toe's end reaches 0.8 mm into the bone before it: 2 mm of way are free, so it goes along its
+// axis and keeps its form. Closed form: the volume of a cube.
+TEST_CASE("a bone that others do not hold moves whole instead of being pressed small") {
+  std::vector<PlacedBone> bones{block("foot_phalanx5_middle", {0, 0, 0}, 6, 2),
+                                block("foot_phalanx5_distal", {5.2, 0.5, 0.5}, 5, 2)};
+  const ClearanceReport report = clear_bones(bones);
+  CHECK(report.left.empty());
+  CHECK(report.whole_shift > 0.75);
+  CHECK(report.whole_shift <= 2);
+  double volume = 0;
+  for (const auto& brick : bones[1].mesh.bricks)
+    volume += volume_of(corners_of(bones[1].nodes, brick));
+  CHECK(volume == Approx(125).epsilon(0.03));
+}
+
 TEST_CASE("every row of the tables of joints names bones and a law that exist") {
   std::set<std::string> known(bone_names().begin(), bone_names().end());
   known.insert("hip_bone_L");

@@ -211,7 +211,7 @@ BoneMesh mirrored(const BoneMesh& mesh) {
   BoneMesh other = mesh;
   for (Point& p : other.nodes) p.y = -p.y;
   for (Brick& b : other.bricks) b = {b[3], b[2], b[1], b[0], b[7], b[6], b[5], b[4]};
-  for (Quad& q : other.surface) q = {q[3], q[2], q[1], q[0]};
+  for (Quad& q : other.surface) q = {q[0], q[3], q[2], q[1]};  // keeps the diagonal
   return other;
 }
 

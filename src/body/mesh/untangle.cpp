@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 
 #include "base/lane_math.h"
 #include "base/pack.h"
+#include "body/mesh/minimise.h"
 
 namespace fabrica::body {
 namespace {
@@ -106,93 +106,16 @@ double least_determinant(const UntangleProblem& problem, const std::vector<Point
   return least;
 }
 
-using Field = std::vector<Point>;
-
-double inner(const Field& a, const Field& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += dot(a[i], b[i]);
-  return sum;
-}
-
-void add(Field& a, double s, const Field& b) {
-  for (std::size_t i = 0; i < a.size(); ++i) a[i] += s * b[i];
-}
-
-struct Memory {
-  Field step, change;
-  double rho;
-};
-
-// the quasi-Newton direction -H g from the last steps (two-loop recursion)
-Field direction(const std::deque<Memory>& memory, const Field& gradient) {
-  Field d = gradient;
-  std::vector<double> alpha(memory.size());
-  for (std::size_t m = memory.size(); m-- > 0;) {
-    alpha[m] = memory[m].rho * inner(memory[m].step, d);
-    add(d, -alpha[m], memory[m].change);
-  }
-  if (!memory.empty()) {
-    const Memory& last = memory.back();
-    const double scale = 1 / (last.rho * inner(last.change, last.change));
-    for (Point& p : d) p = scale * p;
-  }
-  for (std::size_t m = 0; m < memory.size(); ++m)
-    add(d, alpha[m] - memory[m].rho * inner(memory[m].change, d), memory[m].step);
-  for (Point& p : d) p = -p;
-  return d;
-}
-
 }  // namespace
 
 void untangle(const UntangleProblem& problem, std::vector<Point>& nodes, double weight,
               int iterations) {
   const double least = least_determinant(problem, nodes);
   const double eps = least < 0.02 ? std::max(0.02, std::sqrt(1e-4 + 0.04 * least * least)) : 1e-3;
-  constexpr std::size_t pairs = 7;
-  std::deque<Memory> memory;
-  Field gradient(nodes.size()), trial, trial_gradient(nodes.size());
-  double energy = total_energy(problem, nodes, weight, eps, gradient);
-  for (int iteration = 0; iteration < iterations; ++iteration) {
-    Field d = direction(memory, gradient);
-    double slope = inner(d, gradient);
-    if (slope >= 0) {
-      memory.clear();
-      d = direction(memory, gradient);
-      slope = inner(d, gradient);
-    }
-    if (slope == 0) return;
-    double longest = 0;
-    for (const Point& p : d) longest = std::max(longest, dot(p, p));
-    double step = std::min(1.0, 0.5 * problem.spacing / std::sqrt(longest));
-    if (memory.empty()) step = std::min(step, 0.05 * problem.spacing / std::sqrt(longest));
-    double trial_energy = energy;
-    bool accepted = false;
-    for (int cut = 0; cut < 12 && !accepted; ++cut, step *= 0.4) {
-      trial = nodes;
-      add(trial, step, d);
-      trial_energy = total_energy(problem, trial, weight, eps, trial_gradient);
-      accepted = trial_energy <= energy + 1e-4 * step * slope;
-    }
-    if (!accepted) {
-      if (memory.empty()) return;
-      memory.clear();
-      continue;
-    }
-    Memory pair{trial, trial_gradient, 0};
-    add(pair.step, -1, nodes);
-    add(pair.change, -1, gradient);
-    const double curvature = inner(pair.step, pair.change);
-    const bool converged = energy - trial_energy < 1e-7 * energy;
-    nodes.swap(trial);
-    gradient.swap(trial_gradient);
-    energy = trial_energy;
-    if (converged) return;
-    if (curvature > 1e-12 * inner(pair.step, pair.step)) {
-      pair.rho = 1 / curvature;
-      memory.push_back(std::move(pair));
-      if (memory.size() > pairs) memory.pop_front();
-    }
-  }
+  const auto energy = [&](const std::vector<Point>& at, std::vector<Point>& gradient) {
+    return total_energy(problem, at, weight, eps, gradient);
+  };
+  minimise(energy, nodes, 0.5 * problem.spacing, iterations);
 }
 
 }  // namespace fabrica::body

@@ -22,13 +22,25 @@ struct SurfaceNode {
   double depth = 0;
 };
 
+// A plane that a node must lie on or, one-sided, in front of: (x - point) . normal >= 0. For the
+// local stage.
+struct PlaneNode {
+  int node = 0;
+  Point point{0, 0, 0}, normal{0, 0, 1};
+  double weight = 1;
+  bool one_sided = false;
+};
+
 struct UntangleProblem {
   std::vector<Brick> bricks;
   std::vector<std::array<float, 3>>
       target;  // [mm] edge lengths of each brick along its own three directions
   std::vector<SurfaceNode> surface;
-  std::vector<Quad> shells;  // faces that carry a shell, for the local stage
-  double spacing = 1;        // [mm] h of (3)
+  std::vector<Quad> shells;       // faces that carry a shell, for the local stage
+  std::vector<PlaneNode> planes;  // for the local stage
+  // of a mesh that is its own mirror image, the node on the other side; empty: it is not
+  std::vector<int> image;
+  double spacing = 1;  // [mm] h of (3)
 };
 
 // one minimisation with weight w of (3); moves `nodes`

@@ -1,0 +1,97 @@
+#include "body/joints/touch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace fabrica::body {
+
+namespace {
+
+constexpr double elsewhere = 0.2;  // [mm] gap where no joint is
+constexpr double grown_on = 0.05;  // [mm] gap where bones are tied to each other
+
+// barycentric coordinates of the projection of p on triangle abc, clipped to it
+std::array<double, 3> barycentric(const Point& p, const Point& a, const Point& b, const Point& c) {
+  const Point u = b - a, v = c - a, w = p - a;
+  const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), wu = dot(w, u), wv = dot(w, v);
+  const double det = uu * vv - uv * uv;
+  if (det <= 0) return {1, 0, 0};
+  const double s = std::max((vv * wu - uv * wv) / det, 0.0),
+               t = std::max((uu * wv - uv * wu) / det, 0.0), sum = std::max(s + t, 1.0);
+  return {1 - (s + t) / sum, s / sum, t / sum};
+}
+
+// weights of the corners of a quad at a point of its triangles (0 1 2) and (0 2 3)
+std::array<double, 4> weights(const std::vector<Point>& nodes, const std::array<int, 4>& quad,
+                              const Point& p) {
+  Point x[4];
+  for (std::size_t i = 0; i < 4; ++i) x[i] = nodes[std::size_t(quad[i])];
+  const auto first = barycentric(p, x[0], x[1], x[2]), second = barycentric(p, x[0], x[2], x[3]);
+  const double d1 = norm(p - (first[0] * x[0] + first[1] * x[1] + first[2] * x[2])),
+               d2 = norm(p - (second[0] * x[0] + second[1] * x[2] + second[2] * x[3]));
+  if (d1 <= d2) return {first[0], first[1], first[2], 0};
+  return {second[0], 0, second[1], second[2]};
+}
+
+bool boxes_meet(const BoneSurface& a, const BoneSurface& b, double gap) {
+  for (int i = 0; i < 3; ++i)
+    if (a.low[i] > b.high[i] + gap || b.low[i] > a.high[i] + gap) return false;
+  return true;
+}
+
+}  // namespace
+
+Surfaces::Surfaces(const std::vector<PlacedBone>& bones) : bones_(bones), surfaces_(bones.size()) {
+  for (int i = 0; i < int(bones.size()); ++i) renew(i);
+}
+
+void Surfaces::renew(int bone) {
+  const PlacedBone& b = bones_[std::size_t(bone)];
+  surfaces_[std::size_t(bone)] = std::make_unique<BoneSurface>(b.nodes, b.mesh.surface);
+}
+
+std::vector<NearPair> Surfaces::near(const std::vector<Articulation>& joints) const {
+  std::map<std::pair<int, int>, const Articulation*> joint_of;
+  for (const Articulation& joint : joints) joint_of[std::minmax(joint.a, joint.b)] = &joint;
+  std::vector<NearPair> pairs;
+  const int count = int(bones_.size());
+  for (int a = 0; a < count; ++a)
+    for (int b = a + 1; b < count; ++b) {
+      const auto joint = joint_of.find({a, b});
+      const bool tied = joint != joint_of.end() && joint->second->kind == ArticulationKind::joined;
+      const double gap = joint == joint_of.end() ? elsewhere
+                         : tied                  ? grown_on
+                                                 : wanted_gap(*joint->second);
+      if (boxes_meet((*this)[a], (*this)[b], gap)) pairs.push_back({a, b, gap, tied});
+    }
+  return pairs;
+}
+
+void Surfaces::collect(const NearPair& pair, double margin, double reach,
+                       std::vector<Touch>& list) const {
+  const std::vector<Point>&here = bones_[std::size_t(pair.a)].nodes,
+        &there = bones_[std::size_t(pair.b)].nodes;
+  const BoneSurface &a = (*this)[pair.a], &b = (*this)[pair.b];
+  for (int node : a.nodes()) {
+    const Point& p = here[std::size_t(node)];
+    const SurfacePoint at = b.nearest(p, std::max(pair.gap + margin, reach));
+    if (at.quad < 0 || at.distance >= pair.gap + margin) continue;
+    // on the far side of a thin bone the nearest face looks the same way as this one; the blunt
+    // ends of bones that are tied leave in any direction
+    const double alike = dot(a.node_normal(node), at.normal);
+    if (!pair.tied && at.distance < 0 && alike > 0.5) continue;
+    const auto& quad = bones_[std::size_t(pair.b)].mesh.surface[std::size_t(at.quad)];
+    list.push_back({pair.a, node, pair.b, quad, weights(there, quad, at.point), at.normal,
+                    at.distance, pair.gap});
+  }
+}
+
+std::vector<Touch> Surfaces::touches(const NearPair& pair, double margin, double reach) const {
+  std::vector<Touch> list;
+  collect(pair, margin, reach, list);
+  collect({pair.b, pair.a, pair.gap, pair.tied}, margin, reach, list);
+  return list;
+}
+
+}  // namespace fabrica::body

@@ -1,0 +1,47 @@
+#pragma once
+// Where two bones stand nearer to each other than they shall.
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "body/joints/articulation.h"
+#include "body/joints/bone_surface.h"
+
+namespace fabrica::body {
+
+// a surface node of bone a before a face of bone b
+struct Touch {
+  int a = 0, node = 0;
+  int b = 0;
+  std::array<int, 4> quad{};       // nodes of b
+  std::array<double, 4> weight{};  // of them at the nearest point
+  Point normal{0, 0, 1};           // of the face, unit
+  double distance = 0;             // [mm] signed, negative: inside b
+  double gap = 0;                  // [mm] wanted
+};
+
+// two bones that are near each other, and the gap [mm] that they shall have
+struct NearPair {
+  int a = 0, b = 0;
+  double gap = 0;
+  bool tied = false;
+};
+
+class Surfaces {
+ public:
+  explicit Surfaces(const std::vector<PlacedBone>& bones);
+  void renew(int bone);  // after its nodes have moved
+  const BoneSurface& operator[](int bone) const { return *surfaces_[std::size_t(bone)]; }
+  // pairs whose boxes are within their gap: of a joint what the joint wants, 0.2 mm elsewhere
+  std::vector<NearPair> near(const std::vector<Articulation>& joints) const;
+  // the nodes of either bone that are nearer to the other than gap + margin; what is deeper than
+  // reach [mm] inside is taken for the other side of the bone
+  std::vector<Touch> touches(const NearPair& pair, double margin, double reach) const;
+
+ private:
+  void collect(const NearPair& pair, double margin, double reach, std::vector<Touch>& list) const;
+  const std::vector<PlacedBone>& bones_;
+  std::vector<std::unique_ptr<BoneSurface>> surfaces_;
+};
+
+}  // namespace fabrica::body
