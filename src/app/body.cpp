@@ -6,6 +6,7 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
 #include "app/body_draws.h"
 #include "app/body_pictures.h"
@@ -14,6 +15,8 @@
 #include "body/goals.h"
 #include "body/landmarks.h"
 #include "body/measures.h"
+#include "body/mount.h"
+#include "body/rig.h"
 #include "body/surroundings.h"
 #include "deck/writer.h"
 #include "model/check.h"
@@ -64,6 +67,41 @@ body::OutsideMeasures search_contacts(const Model& model, double seconds,
   return outside;
 }
 
+bool fracture_named(const std::string& name) {
+  if (name == "count" || name == "delete") return name == "delete";
+  throw BodyError(fmt::format("--fracture '{}' is unknown; there are count, delete", name));
+}
+
+// The body in its trial: one of the three by name, or a rig from a file.
+struct Trial {
+  explicit Trial(const BodyCommand& c) : name(c.trial), fracture(fracture_named(c.fracture)) {
+    if (name.ends_with(".toml")) rig = body::read_rig(name);
+  }
+  body::Body build(body::BodyOptions options) const {
+    if (rig) options.only = rig->bones(), options.joints = false;
+    body::Body made = body::build_body(options);
+    if (rig) body::place_specimens(*rig, made);
+    return made;
+  }
+  body::AssemblyOptions assembly() const {
+    body::AssemblyOptions options;
+    options.end_time = rig ? rig->end_time : body::trial_time(name);
+    options.fracture = fracture;
+    if (rig) options.output_every = rig->output_every, options.states_every = rig->states_every;
+    return options;
+  }
+  void surround(const body::Body& made, body::AssembledBody& assembled, Builder& builder) const {
+    if (!rig) return body::surround(name, made, assembled, builder);
+    for (const body::MountedPot& pot : body::mount(*rig, made, assembled, builder))
+      fmt::print("pot {}: {}, pivot at {:.2f} {:.2f} {:.2f} mm\n", pot.id, pot.name, pot.pivot.x,
+                 pot.pivot.y, pot.pivot.z);
+  }
+
+  std::string name;
+  bool fracture;
+  std::optional<body::Rig> rig;
+};
+
 }  // namespace
 
 int body_command(const BodyCommand& c) {
@@ -73,13 +111,12 @@ int body_command(const BodyCommand& c) {
   }
   if (c.random > 0) return draw_bodies(c.random, c.resolution, !c.no_joints);
   const std::clock_t start = std::clock();
-  const body::Body made = body::build_body(options_of(c));
+  const Trial trial(c);
+  const body::Body made = trial.build(options_of(c));
   Diagnostics diagnostics;
   Builder builder(diagnostics);
-  body::AssemblyOptions assembly;
-  assembly.end_time = body::trial_time(c.trial);
-  body::AssembledBody assembled = body::assemble(made, assembly, builder);
-  body::surround(c.trial, made, assembled, builder);
+  body::AssembledBody assembled = body::assemble(made, trial.assembly(), builder);
+  trial.surround(made, assembled, builder);
   const std::unique_ptr<Model> model = builder.finish();
   const double seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
   if (!c.quiet) fmt::print(stderr, "\r{:<24}\r", "");
@@ -118,7 +155,11 @@ void add_body(CLI::App& app, BodyCommand& c) {
   cmd->add_option("--resolution", c.resolution, "coarse, standard or fine")->capture_default_str();
   cmd->add_option("--only", c.only, "what to make: skeleton")->capture_default_str();
   cmd->add_option("--bones", c.bones, "only these bones, as --list names them")->delimiter(',');
-  cmd->add_option("--trial", c.trial, "what surrounds it: none, seat, drop or sternum")
+  cmd->add_option("--trial", c.trial,
+                  "what surrounds it: none, seat, drop, sternum, or FILE.toml, a rig for bones")
+      ->capture_default_str();
+  cmd->add_option("--fracture", c.fracture,
+                  "bone above its strain at fracture: count (after the run) or delete (in it)")
       ->capture_default_str();
   cmd->add_option("--out", c.out, "deck to write; landmarks stand beside it")
       ->capture_default_str();

@@ -11,7 +11,7 @@ namespace fabrica {
 
 struct BodyCommand {
   std::string sex = "male", posture = "standing", resolution = "coarse", goals, out = "body.k",
-              only = "skeleton", trial = "none";
+              only = "skeleton", trial = "none", fracture = "count";
   int random = 0;
   double stature = 1750, mass = 77;
   std::vector<std::string> set, bones;

@@ -31,7 +31,7 @@ struct RegionIds {
 class Assembly {
  public:
   Assembly(const Body& body, const AssemblyOptions& options, Builder& builder)
-      : body_(body), options_(options), builder_(builder), materials_(builder) {
+      : body_(body), options_(options), builder_(builder), materials_(builder, options.fracture) {
     for (int r = 0; r <= int(Region::leg); ++r) ids_.emplace_back(Region(r));
   }
   AssembledBody run() {
@@ -109,6 +109,7 @@ class Assembly {
     out_.bone_node.push_back(node);
     const BoneMaterial rows = bone_material(bone.mesh.name);
     const bool rigid = rows.rigid_at_coarse && body_.resolution == Resolution::coarse;
+    out_.bone_brick.emplace_back(), out_.bone_shell.emplace_back();
     bricks(index, bone, rows, rigid, node);
     if (!rigid) cortex(index, bone, rows, node);
   }
@@ -129,6 +130,7 @@ class Assembly {
       std::array<Id, 8> corner{};
       for (std::size_t k = 0; k < 8; ++k) corner[k] = node[std::size_t(bone.mesh.bricks[e][k])];
       builder_.add_solid(++ids(bone.region).element, part_of_layer[layer], corner.data(), 8);
+      out_.bone_brick.back().push_back(ids(bone.region).element);
       ++out_.parts[entry_of_[part_of_layer[layer]]].elements;
     }
   }
@@ -137,6 +139,7 @@ class Assembly {
   void cortex(int index, const PlacedBone& bone, const BoneMaterial& rows,
               const std::vector<Id>& node) {
     if (bone.mesh.cortex.empty()) return;
+    out_.bone_shell.back().assign(bone.mesh.surface.size(), 0);
     Id pid = 0;
     bool solid = false;
     for (const int layer : bone.mesh.brick_layer)
@@ -156,6 +159,7 @@ class Assembly {
       for (std::size_t k = 0; k < 4; ++k) corner[k] = node[std::size_t(bone.mesh.surface[q][k])];
       const double thickness[4] = {t, t, t, t};
       builder_.add_shell(++ids(bone.region).element, pid, corner.data(), 4, thickness);
+      out_.bone_shell.back()[q] = ids(bone.region).element;
       ++out_.parts.back().elements;
     }
   }

@@ -24,6 +24,8 @@ struct AssembledBody {
   std::vector<PartEntry> parts;
   std::vector<std::vector<std::int64_t>> bone_node;   // bone -> node -> id
   std::vector<std::vector<std::int64_t>> piece_node;  // piece -> node -> id
+  std::vector<std::vector<std::int64_t>> bone_brick;  // bone -> brick -> id
+  std::vector<std::vector<std::int64_t>> bone_shell;  // bone -> quad of the surface -> id, 0: none
   std::int64_t all_parts_set = 0;                     // part set of the whole body
   std::int64_t next_part = 8000001, next_node = 8000001, next_element = 8000001, next_set = 8000001;
 };
@@ -34,6 +36,7 @@ struct AssemblyOptions {
   double output_every = 1;  // [ms] of histories
   double states_every = 5;  // [ms] of the animation
   bool contacts = true;
+  bool fracture = false;  // criteria of materials.csv in strain delete elements
 };
 
 // Adds the body to a builder; the caller adds what surrounds it and finishes.

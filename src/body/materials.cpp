@@ -7,7 +7,8 @@
 
 namespace fabrica::body {
 
-Materials::Materials(Builder& builder) : builder_(builder), table_("materials.csv") {
+Materials::Materials(Builder& builder, bool fracture)
+    : builder_(builder), fracture_(fracture), table_("materials.csv") {
   for (int r = 0; r < table_.rows(); ++r) row_of_[table_.text(r, "row")] = r;
 }
 
@@ -43,10 +44,30 @@ std::int64_t Materials::use(const std::string& row) {
                                  table_.text(r, "keyword")));
     c.set(item.substr(0, equals), std::atof(item.c_str() + equals + 1));
   }
-  // fracture: only `delete` acts in the run
-  if (table_.text(r, "criterion") == "delete")
-    c.set(c.has_field("fail") ? "fail" : "fs", table_.number(r, "value"));
+  // fracture: `delete` acts in every run, `strain` where asked for
+  const std::string& criterion = table_.text(r, "criterion");
+  const char* field = c.has_field("fail") ? "fail" : "fs";
+  if (criterion == "delete") c.set(field, table_.number(r, "value"));
+  if (criterion == "strain" && fracture_)
+    c.set(field, plastic_strain_at(c, table_.number(r, "value")));
   return ids_[row] = last_material_;
+}
+
+double plastic_strain_at(const Card& law, double strain) {
+  const double E = law.real("e"), yield = law.real("sigy"), tangent = law.real("etan");
+  std::vector<std::pair<double, double>> curve;
+  for (int i = 1; i <= 8 && law.has_field("eps1"); ++i) {
+    const double e = law.real(fmt::format("eps{}", i)), s = law.real(fmt::format("es{}", i));
+    if (s > 0) curve.emplace_back(e, s);
+  }
+  if (curve.size() < 2) curve = {{0, yield}, {1, yield + E * tangent / (E - tangent)}};
+  if (curve[0].second >= E * strain) return 0;
+  // the piece that holds the root, the last one goes on
+  std::size_t i = 0;
+  while (i + 2 < curve.size() && curve[i + 1].first + curve[i + 1].second / E < strain) ++i;
+  const double slope =
+      (curve[i + 1].second - curve[i].second) / (curve[i + 1].first - curve[i].first);
+  return (strain - (curve[i].second - slope * curve[i].first) / E) / (1 + slope / E);
 }
 
 std::int64_t Materials::add(const std::string& title, const Law& law) {

@@ -13,7 +13,8 @@ namespace fabrica::body {
 
 class Materials {
  public:
-  explicit Materials(Builder& builder);
+  // `fracture`: a criterion in strain deletes elements in the run, see plastic_strain_at_fracture
+  explicit Materials(Builder& builder, bool fracture = false);
   // id of the material of a row; throws BodyError when the table has no such row or a field is not
   // of its keyword
   std::int64_t use(const std::string& row);
@@ -26,11 +27,20 @@ class Materials {
                           const std::vector<std::pair<double, double>>& points);
 
   Builder& builder_;
+  bool fracture_;
   Table table_;
   std::map<std::string, int> row_of_;
   std::map<std::string, std::int64_t> ids_;
   std::int64_t last_material_ = 0, last_curve_ = 0;
 };
+
+// The plastic strain e_p at which a bar of a law (*MAT_PIECEWISE_LINEAR_PLASTICITY or
+// *MAT_PLASTIC_KINEMATIC) pulled slowly reaches a strain e:
+//
+//   e_p + s(e_p) / E = e,   s = SIGY + E ETAN / (E - ETAN) e_p, or the curve EPS, ES          (1)
+//
+// 0 where it is still elastic.
+double plastic_strain_at(const Card& law, double strain);
 
 // materials of a bone, a row of data/anatomy/bone_materials.csv
 struct BoneMaterial {

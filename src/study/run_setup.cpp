@@ -26,14 +26,18 @@ std::string absolute(const std::string& folder, const std::string& path) {
 std::string generate_body(const Case& c, const std::string& folder, const std::string& resolution) {
   const std::string file = folder + "/body.k", made_of = folder + "/body.txt";
   Command command{{this_program(), "body", "--quiet"}, folder + "/body.log"};
+  std::string read;  // what the body is made from besides the options
   for (const auto& [key, value] : c.body) {
     command.arguments.push_back("--" + key);
-    command.arguments.push_back(value);
+    // files lie in the folder of the case
+    const bool file_of_case = value.ends_with(".toml");
+    command.arguments.push_back(file_of_case ? absolute(c.folder, value) : value);
+    if (file_of_case) read += read_file(command.arguments.back());
   }
   if (!resolution.empty())
     command.arguments.insert(command.arguments.end(), {"--resolution", resolution});
   command.arguments.insert(command.arguments.end(), {"--out", file});
-  std::string key = engine_version;
+  std::string key = engine_version + read;
   for (const std::string& a : command.arguments) key += "\n" + a;
   if (fs::exists(file) && read_file(made_of) == key) return file;
   run_all({command}, 1, [&](std::size_t, const Ended& e) {

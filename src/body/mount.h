@@ -1,0 +1,30 @@
+#pragma once
+// Bones in a test rig: specimens laid into its axes, pots as rigid bodies with their supports and
+// motions, the force on each pot.
+#include <vector>
+
+#include "body/assembly.h"
+#include "body/body.h"
+#include "body/rig.h"
+
+namespace fabrica::body {
+
+// Nodes of a bone that a pot holds.
+std::vector<int> potted_nodes(const RigPot& pot, const PlacedBone& bone);
+
+// Leaves the specimens alone of all bones and lays them into the rig's axes. Throws BodyError where
+// a specimen was not made or its pots overlap.
+void place_specimens(const Rig& rig, Body& body);
+
+// What a pot became, in the order of the file: its number is that of its rigid body (rbdout) and of
+// the section through the bone beside it (secforc: force of the bone on the pot).
+struct MountedPot {
+  std::int64_t id = 0;
+  std::string name;  // "right.rib5 posterior"
+  Point pivot{0, 0, 0};
+};
+// Adds pots, supports, motions and output to the model of an assembled body.
+std::vector<MountedPot> mount(const Rig& rig, const Body& body, AssembledBody& assembled,
+                              Builder& builder);
+
+}  // namespace fabrica::body
