@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "body/id_rows.h"
 #include "body/materials.h"
 
 namespace fabrica::body {
@@ -288,16 +289,6 @@ class Assembly {
     c.set("ssid", double(nodes)).set("msid", double(segments)).set("sstyp", 4).set("mstyp", 0);
     c.set("sst", -tie_reach)
         .set("mst", -tie_reach);  // negative: the distance within which nodes are tied
-  }
-
-  // rows of eight ids
-  template <class Get>
-  static void add_ids(Card& set, std::size_t count, Get id) {
-    for (std::size_t i = 0; i < count; i += 8) {
-      std::vector<double> row(8, 0.0);
-      for (std::size_t k = i; k < std::min(i + 8, count); ++k) row[k - i] = double(id(k));
-      set.add_row(row);
-    }
   }
 
   void part_set() {

@@ -13,7 +13,7 @@ namespace fabrica::body {
 
 class Materials {
  public:
-  // `fracture`: a criterion in strain deletes elements in the run, see plastic_strain_at_fracture
+  // `fracture`: a criterion in strain deletes elements in the run, see plastic_strain_at
   explicit Materials(Builder& builder, bool fracture = false);
   // id of the material of a row; throws BodyError when the table has no such row or a field is not
   // of its keyword

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "body/id_rows.h"
+
 namespace fabrica::body {
 namespace {
 
@@ -73,14 +75,6 @@ void lay(const Rig& rig, const RigSpecimen& specimen, PlacedBone& bone) {
   for (std::size_t n = 0; n < local.size(); ++n) bone.nodes[n] = bone.placement(local[n]);
 }
 
-void rows_of_eight(Card& card, const std::vector<std::int64_t>& ids) {
-  for (std::size_t i = 0; i < ids.size(); i += 8) {
-    std::vector<double> row(8, 0.0);
-    for (std::size_t k = i; k < std::min(i + 8, ids.size()); ++k) row[k - i] = double(ids[k]);
-    card.add_row(row);
-  }
-}
-
 // the code by which supports name a choice of x, y, z
 int support_code(bool x, bool y, bool z) {
   static constexpr int code[8] = {0, 1, 2, 4, 3, 6, 5, 7};
@@ -113,7 +107,7 @@ class Mounting {
     card.options = {"TITLE"};
     card.title = title;
     card.set("sid", double(++assembled_.next_set));
-    rows_of_eight(card, ids);
+    add_ids(card, ids.size(), [&](std::size_t i) { return ids[i]; });
     return assembled_.next_set;
   }
 

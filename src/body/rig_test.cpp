@@ -58,6 +58,15 @@ Point mean_of(const PlacedBone& bone, const std::vector<int>& nodes) {
   return (1.0 / double(nodes.size())) * sum;
 }
 
+// the bones of a rig, laid into it
+Body specimens_of(const Rig& rig) {
+  BodyOptions options;
+  options.only = rig.bones(), options.joints = false;
+  Body body = build_body(options);
+  place_specimens(rig, body);
+  return body;
+}
+
 }  // namespace
 
 TEST_CASE("a rig is read, and what is wrong in it is said with its line") {
@@ -80,10 +89,7 @@ TEST_CASE("a rig is read, and what is wrong in it is said with its line") {
 
 TEST_CASE("a specimen lies in the rig with its pots on the x axis, flat, unstrained") {
   const Rig rig = rig_of(good);
-  BodyOptions options;
-  options.only = rig.bones(), options.joints = false;
-  Body body = build_body(options);
-  place_specimens(rig, body);
+  Body body = specimens_of(rig);
   REQUIRE(body.bones.size() == 1);  // the left rib is gone
   const PlacedBone& rib = body.bones[0];
   const Point from = mean_of(rib, potted_nodes(rig.pots[0], rib)),
@@ -114,10 +120,7 @@ TEST_CASE("a specimen lies in the rig with its pots on the x axis, flat, unstrai
 
 TEST_CASE("pots become rigid bodies whose section holds every element beside them") {
   const Rig rig = rig_of(good);
-  BodyOptions options;
-  options.only = rig.bones(), options.joints = false;
-  Body body = build_body(options);
-  place_specimens(rig, body);
+  Body body = specimens_of(rig);
   Diagnostics diagnostics;
   Builder builder(diagnostics);
   AssembledBody assembled = assemble(body, {}, builder);
