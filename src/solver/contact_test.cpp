@@ -285,3 +285,43 @@ TEST_CASE("a penalty tie holds a node in place and keeps momentum") {
   CHECK((kinetic + rig.state.energy.contact) / (0.5 * 16 * 1e-4) ==
         doctest::Approx(1).epsilon(0.005));
 }
+
+TEST_CASE("a penalty tie at a distance does no work around a closed path") {
+  for (const bool triangles : {false, true}) {
+    CAPTURE(triangles);
+    Rig rig;
+    const int a = rig.add_part(), b = rig.add_part();
+    const auto lower = rig.add_plate(b, {0, 0, 0}, {4, 0, 0.3}, {0.5, 4, 0}, 2, 2, 0.2);
+    rig.add_plate(a, {0.6, 0.7, 3}, {2, 0, 0}, {0, 2, 0.5}, 2, 2, 0.2);
+    if (triangles)
+      for (std::size_t i = 0; i < 4; ++i) rig.model.shells.node[i][3] = rig.model.shells.node[i][2];
+    rig.model.nodes.x[std::size_t(lower[4])] += Vec3d{0.2, -0.1, 0.3};  // warped segments
+    Contact& c = rig.add_contact(ContactKind::tied_nodes_to_surface, {a}, {b});
+    c.offset = true, c.sst = -9;
+    rig.start(0.01);
+    CHECK(rig.contacts->initial_report().tied_nodes == 9);
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> u(-0.3, 0.3);
+    const std::vector<Vec3d>& at = rig.model.nodes.x;
+    std::vector<Vec3d> cosine, sine;
+    for (std::size_t i = 0; i < at.size(); ++i)
+      cosine.push_back({u(random), u(random), u(random)}),
+          sine.push_back({u(random), u(random), u(random)});
+    Team team(1);
+    double work = 0, size = 0;
+    const int steps = 200;  // of a periodic path: the sum is as good as the integral
+    for (int k = 0; k < steps; ++k) {
+      const double s = 2 * M_PI * k / steps;
+      for (std::size_t i = 0; i < at.size(); ++i)
+        rig.state.nodes[i].x = at[i] + std::cos(s) * cosine[i] + std::sin(s) * sine[i];
+      rig.contacts->forces(rig.model, rig.state, team);
+      for (std::size_t i = 0; i < at.size(); ++i) {
+        const Vec3d along = std::cos(s) * sine[i] - std::sin(s) * cosine[i];
+        const double power = dot(rig.state.interaction.take(int(i)), along);
+        work += power, size += std::abs(power);
+      }
+    }
+    CHECK(size > 1);
+    CHECK(std::abs(work) < 1e-8 * size);
+  }
+}

@@ -13,54 +13,88 @@
 namespace fabrica {
 namespace {
 
-// segment as it is now: frame, point that carries the node, rotation operator
+// Segment as it is now: the point that carries the node, the frame that the offset turns with, and
+// the exact derivative of the frame's turn by the place of each corner,
+//   delta theta = sum_i W_i delta x_i,   W_i = e1 g1_i^T + e2 g2_i^T + e3 g3_i^T.
+// Forces are its transpose, so that a penalty is the gradient of an energy however the segment
+// distorts. e3 is normal to both diagonals; e1 halves the angle of one middle line and the other
+// turned back by a right angle.
 struct Segment {
-  Vec3d r[4];     // corners from their mean
-  Vec3d point;    // c = sum phi x
-  Mat3d axes;     // columns of the frame in rows: e1, e2, e3
-  Mat3d inverse;  // T^-1
-  double weight;  // 1/corners
+  Vec3d point;          // c = sum phi x
+  Vec3d axis[3];        // e1, e2, e3
+  Vec3d turn_by[4][3];  // g1, g2, g3 of each corner
 
   Segment(const State& state, const Tie& t) {
-    Vec3d mean{0, 0, 0};
+    Vec3d x[4];
     point = {0, 0, 0};
-    weight = 1.0 / t.corners;
     for (int i = 0; i < t.corners; ++i) {
-      mean += weight * state.nodes[t.corner[i]].x;
-      point += t.phi[i] * state.nodes[t.corner[i]].x;
+      x[i] = state.nodes[t.corner[i]].x;
+      point += t.phi[i] * x[i];
     }
-    Mat3d T{};
-    for (int i = 0; i < t.corners; ++i) {
-      r[i] = state.nodes[t.corner[i]].x - mean;
-      const double r2 = dot(r[i], r[i]);
-      for (int a = 0; a < 3; ++a)
-        for (int b = 0; b < 3; ++b) T(a, b) += weight * ((a == b ? r2 : 0) - r[i][a] * r[i][b]);
-    }
-    inverse = fabrica::inverse(T);
-    const Vec3d e3 = contact_detail::unit(t.corners == 3 ? cross(r[1] - r[0], r[2] - r[0])
-                                                         : cross(r[2] - r[0], r[3] - r[1]));
-    Vec3d e1 = t.corners == 3 ? r[1] - r[0] : r[1] + r[2] - r[0] - r[3];
-    e1 = contact_detail::unit(e1 - dot(e1, e3) * e3);
-    const Vec3d e2 = cross(e3, e1);
-    axes = {{{e1.x, e1.y, e1.z}, {e2.x, e2.y, e2.z}, {e3.x, e3.y, e3.z}}};
+    for (auto& corner : turn_by) corner[0] = corner[1] = corner[2] = {0, 0, 0};
+    t.corners == 3 ? triangle(x) : quad(x);
   }
+
   Vec3d offset(const Tie& t) const {
-    return transpose(axes) * Vec3d{t.offset[0], t.offset[1], t.offset[2]};
+    return t.offset[0] * axis[0] + t.offset[1] * axis[1] + t.offset[2] * axis[2];
+  }
+  Vec3d in_axes(const Vec3d& v) const {
+    return {dot(v, axis[0]), dot(v, axis[1]), dot(v, axis[2])};
   }
   Vec3d spin(const State& state, const Tie& t) const {
-    Vec3d momentum{0, 0, 0};
-    for (int i = 0; i < t.corners; ++i)
-      momentum += weight * cross(r[i], state.nodes[t.corner[i]].v);
-    return inverse * momentum;
+    Vec3d w{0, 0, 0};
+    for (int k = 0; k < 3; ++k) {
+      double rate = 0;
+      for (int i = 0; i < t.corners; ++i) rate += dot(turn_by[i][k], state.nodes[t.corner[i]].v);
+      w += rate * axis[k];
+    }
+    return w;
   }
   Vec3d velocity(const State& state, const Tie& t, const Vec3d& lever) const {
     Vec3d v{0, 0, 0};
     for (int i = 0; i < t.corners; ++i) v += t.phi[i] * state.nodes[t.corner[i]].v;
     return v + cross(spin(state, t), lever);
   }
-  // share of corner i in a force f at the point and a couple
-  Vec3d share(const Tie& t, int i, const Vec3d& f, const Vec3d& turn) const {
-    return t.phi[i] * f + weight * cross(turn, r[i]);
+  // share of corner i in a force f at the point and a couple, given in the axes
+  Vec3d share(const Tie& t, int i, const Vec3d& f, const Vec3d& couple) const {
+    return t.phi[i] * f + couple[0] * turn_by[i][0] + couple[1] * turn_by[i][1] +
+           couple[2] * turn_by[i][2];
+  }
+
+ private:
+  // how the normal of d1 x d2 tilts with d1 and d2: d1 runs from corner a to b, d2 from c to d
+  void tilt(const Vec3d& d1, const Vec3d& d2, double area, int a, int b, int c, int d) {
+    const double s = 1 / area;
+    const Vec3d by_d1[2] = {s * cross(axis[1], d2), s * cross(d2, axis[0])};
+    const Vec3d by_d2[2] = {s * cross(d1, axis[1]), s * cross(axis[0], d1)};
+    for (int k = 0; k < 2; ++k) {
+      turn_by[b][k] += by_d1[k], turn_by[a][k] += -by_d1[k];
+      turn_by[d][k] += by_d2[k], turn_by[c][k] += -by_d2[k];
+    }
+  }
+  void set_axes(const Vec3d& e3, const Vec3d& e1) {
+    axis[2] = e3, axis[0] = contact_detail::unit(e1 - dot(e1, e3) * e3);
+    axis[1] = cross(e3, axis[0]);
+  }
+  void triangle(const Vec3d* x) {
+    const Vec3d d1 = x[1] - x[0], d2 = x[2] - x[0], n = cross(d1, d2);
+    set_axes(contact_detail::unit(n), d1);
+    tilt(d1, d2, norm(n), 0, 1, 0, 2);
+    const Vec3d g = (1 / norm(d1)) * axis[1];
+    turn_by[1][2] += g, turn_by[0][2] += -g;
+  }
+  void quad(const Vec3d* x) {
+    const Vec3d d1 = x[2] - x[0], d2 = x[3] - x[1], n = cross(d1, d2);
+    const Vec3d e3 = contact_detail::unit(n);
+    // both lie in the plane of the diagonals
+    const Vec3d a = x[1] + x[2] - x[0] - x[3], b = x[2] + x[3] - x[0] - x[1];
+    const Vec3d along = contact_detail::unit(a), across = contact_detail::unit(b);
+    set_axes(e3, along + cross(across, e3));
+    tilt(d1, d2, norm(n), 0, 2, 1, 3);
+    const Vec3d by_a = (0.5 / norm(a)) * cross(e3, along);
+    const Vec3d by_b = (0.5 / norm(b)) * cross(e3, across);
+    turn_by[0][2] = -by_a - by_b, turn_by[1][2] = by_a - by_b;
+    turn_by[2][2] = by_a + by_b, turn_by[3][2] = by_b - by_a;
   }
 };
 
@@ -161,7 +195,7 @@ void TiedNodes::add(int index, const ContactSurface& tracked, const ContactSurfa
       continue;
     }
     if (project && !soft) state.nodes[n.node].x = at.x;
-    const Vec3d o = Segment(state, t).axes * (state.nodes[n.node].x - at.x);
+    const Vec3d o = Segment(state, t).in_axes(state.nodes[n.node].x - at.x);
     for (int d = 0; d < 3; ++d) t.offset[d] = project && !soft ? 0 : o[d];
     if (soft) {
       t.stiffness = std::min(s.stiffness, n.stiffness);
@@ -234,8 +268,8 @@ void TiedNodes::transfer_forces(State& state) const {
     const Vec3d f = state.force[t.node];
     Vec3d couple = cross(s.offset(t), f);
     if (rotations) couple += state.moment[t.node], state.moment[t.node] = {0, 0, 0};
-    const Vec3d turn = s.inverse * couple;
-    for (int c = 0; c < t.corners; ++c) state.force[t.corner[c]] += s.share(t, c, f, turn);
+    const Vec3d in_axes = s.in_axes(couple);
+    for (int c = 0; c < t.corners; ++c) state.force[t.corner[c]] += s.share(t, c, f, in_axes);
     state.force[t.node] = {0, 0, 0};
     constraint_force_[i] = -f;
   }
@@ -259,9 +293,10 @@ void TiedNodes::forces(State& state) {
     const NodeMotion& node = state.nodes[t.node];
     const Vec3d lever = node.x - s.point, u = lever - s.offset(t);
     const Vec3d f = -t.stiffness * u;
-    const Vec3d turn = s.inverse * cross(lever, f);
+    const Vec3d couple = s.in_axes(cross(lever, f));
     state.interaction.add(t.node, f);
-    for (int c = 0; c < t.corners; ++c) state.interaction.add(t.corner[c], -s.share(t, c, f, turn));
+    for (int c = 0; c < t.corners; ++c)
+      state.interaction.add(t.corner[c], -s.share(t, c, f, couple));
     penalty_force_[i] = f;
     power += dot(f, node.v - s.velocity(state, t, lever));
   }

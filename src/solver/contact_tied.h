@@ -1,13 +1,13 @@
 #pragma once
-// Nodes tied to segments at t = 0. With c = sum phi_i x_i, r_i = x_i - mean(x), T = 1/4 sum (r_i^2
-// I - r_i r_i^T):
-//   velocity   v = sum phi_i v_i + W x o,   W = T^-1 1/4 sum r_i x v_i,   o = x - c turns with the
-//   segment force      f_i += phi_i f + 1/4 (T^-1 (o x f + m)) x r_i
-// The second line is the transpose of the first: a tie does no work and keeps linear and angular
-// momentum.
-//   constraint          node moved onto the segment at the start (TIEDPRJ = 0), o = 0; its mass
-//   goes to the corners constrained offset  the same with o as found offset              penalty k
-//   between the node and its place on the segment; both stay free
+// Nodes tied to segments at t = 0. With c = sum phi_i x_i and W_i the exact derivative of the turn
+// of the segment's frame by the place of its corner i:
+//   velocity   v = sum phi_i v_i + (sum W_i v_i) x o,   o = x - c turns with the frame
+//   force      f_i += phi_i f + W_i^T (o x f + m)
+// The second line is the transpose of the first: a tie does no work, a penalty is the gradient of
+// its energy, linear and angular momentum are kept.
+//   constraint          node put on the segment (TIEDPRJ = 0), o = 0; its mass goes to the corners
+//   constrained offset  the same with o as found
+//   offset              penalty k between the node and its place on the segment; both stay free
 #include <iosfwd>
 #include <vector>
 
