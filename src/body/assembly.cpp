@@ -48,7 +48,7 @@ class Assembly {
   }
 
  private:
-  static constexpr Id solid_section = 1, bone_shell_section = 2;
+  static constexpr Id solid_section = 1, bone_shell_section = 2, stiff_hourglass = 1;
   static constexpr double tie_reach = 30;  // [mm]
 
   RegionIds& ids(Region region) { return ids_[std::size_t(region)]; }
@@ -70,8 +70,8 @@ class Assembly {
         .set("nip", 3)
         .set("nloc", 1);
     for (const char* t : {"t1", "t2", "t3", "t4"}) shell.set(t, 1);
-    Card& h = titled("HOURGLASS", "stiffness form for bone");
-    h.set("hgid", 1).set("ihq", 5).set("qm", 0.1);
+    Card& h = titled("HOURGLASS", "stiffness form for bone and cartilage");
+    h.set("hgid", stiff_hourglass).set("ihq", 5).set("qm", 0.1);
   }
 
   Id part(Region region, const std::string& name, Id section, Id material, Id hourglass,
@@ -125,7 +125,8 @@ class Assembly {
         // each rigid bone is a body of its own: parts that share a rigid material stay apart
         part_of_layer[layer] =
             part(bone.region, part_name(bone, rigid ? "whole" : tissue(bone, layer)), solid_section,
-                 materials_.use(row), rigid ? 0 : 1, {0, "", row, "", index, -1, 0, rigid});
+                 materials_.use(row), rigid ? 0 : stiff_hourglass,
+                 {0, "", row, "", index, -1, 0, rigid});
         entry_of_[part_of_layer[layer]] = out_.parts.size() - 1;
       }
       std::array<Id, 8> corner{};
@@ -213,7 +214,10 @@ class Assembly {
     if (p.bricks.empty() && p.quads.empty() && p.lines.empty()) return;
     const Id material =
         p.material.empty() ? materials_.add(p.name, p.law) : materials_.use(p.material);
-    const Id pid = part(p.region, p.name, piece_section(p), material, 0,
+    // a layer on one bone takes contact forces at single nodes: without stiffness its one-point
+    // bricks give way in modes that strain nothing
+    const bool layer = p.kind == PieceKind::brick && p.bone_a == p.bone_b;
+    const Id pid = part(p.region, p.name, piece_section(p), material, layer ? stiff_hourglass : 0,
                         {0, "", p.material.empty() ? p.law.keyword : p.material, p.source, -1,
                          index, int(p.bricks.size() + p.quads.size() + p.lines.size()), false});
     piece_elements(p, pid, node);
