@@ -1,5 +1,8 @@
 // `fabrica rate`: one pair of curves, their ratings as a table, JSON and a chart.
 #include <fmt/core.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include <cmath>
 #include <fstream>
@@ -67,7 +70,7 @@ CoraOptions cora_options(const RateCommand& c) {
     else
       *found->second = value;
   }
-  o.t_min = c.t_min, o.t_max = c.t_max;
+  o.t_min = c.t_min, o.t_max = c.t_max, o.edges = !c.plot.empty();
   return o;
 }
 
@@ -129,6 +132,16 @@ ordered_json report(const Iso18571Rating& r, const std::string& x_unit, const st
           {"unit", unit}};
 }
 
+// A page that is touched for the first time costs more than what is done with it here: memory that
+// is freed stays for the next curve, and comes in large pieces.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 1 << 30);
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
+  mallopt(M_TOP_PAD, 1 << 25);
+#endif
+}
+
 // low edge forward and high edge back: one closed outline
 PlotCurve outline(const std::string& name, const Signal& low, const Signal& high) {
   PlotCurve c{name, low.x, low.y, true};
@@ -139,8 +152,8 @@ PlotCurve outline(const std::string& name, const Signal& low, const Signal& high
 
 template <class Rating>
 std::vector<PlotCurve> corridors(const Rating& r) {
-  return {outline("inner corridor", r.inner_low, r.inner_high),
-          outline("outer corridor", r.outer_low, r.outer_high)};
+  return {outline("inner corridor", r.edges.inner_low, r.edges.inner_high),
+          outline("outer corridor", r.edges.outer_low, r.edges.outer_high)};
 }
 
 void draw(const RateCommand& c, const Signal& reference, const Signal& signal,
@@ -148,6 +161,8 @@ void draw(const RateCommand& c, const Signal& reference, const Signal& signal,
   std::vector<PlotCurve> curves{{"reference " + reference.name, reference.x, reference.y},
                                 {"signal " + signal.name, signal.x, signal.y}};
   curves.insert(curves.end(), corridor.begin(), corridor.end());
+  if (!signal.unit.empty() && signal.unit != reference.unit)
+    curves[1].y = in_unit(signal, reference.unit).y;
   PlotOptions o;
   o.output = c.plot, o.title = title;
   o.x_label = reference.x_unit == "s" || reference.x_unit == "ms"
@@ -160,11 +175,9 @@ void draw(const RateCommand& c, const Signal& reference, const Signal& signal,
 }  // namespace
 
 int rate_command(const RateCommand& c) {
+  keep_freed_memory();
   Signal reference = read_signal(c.reference), signal = read_signal(c.signal);
   prepare(c, reference, signal);
-  Signal drawn = signal;
-  if (!signal.unit.empty() && !reference.unit.empty() && signal.unit != reference.unit)
-    drawn = in_unit(signal, reference.unit);
   ordered_json json{{"reference", c.reference}, {"signal", c.signal}, {"version", FABRICA_VERSION}};
   std::vector<PlotCurve> corridor;
   std::string title;
@@ -188,7 +201,7 @@ int rate_command(const RateCommand& c) {
   }
   if (c.method != "cora") {
     Iso18571Options o;
-    o.t_min = c.t_min, o.t_max = c.t_max;
+    o.t_min = c.t_min, o.t_max = c.t_max, o.edges = !c.plot.empty();
     if (!c.full_sampling &&
         (reference.x_unit == "s" || reference.x_unit == "ms" || reference.x_unit == "us"))
       o.least_step = 1e-4 / unit_factor(reference.x_unit, "s");
@@ -208,7 +221,7 @@ int rate_command(const RateCommand& c) {
     out << json.dump(2) << '\n';
     if (!out) throw SignalError("cannot-write", "cannot write " + c.json, "Check the folder");
   }
-  if (!c.plot.empty()) draw(c, reference, drawn, corridor, title);
+  if (!c.plot.empty()) draw(c, reference, signal, corridor, title);
   return 0;
 }
 

@@ -3,8 +3,8 @@
 //   raw      K(m) = S(r s) / sqrt(S(r r) S(s s))
 //   centred  rho(m) = (S(r s) - S(r) S(s) / c) / sqrt((S(r r) - S(r)^2 / c) (S(s s) - S(s)^2 / c)),
 //   c = number of terms
-// S(r s) for all m comes from one Fourier transform of twice the length, the rest from running
-// sums.
+// S(r s) for all |m| <= M comes from one Fourier transform of length n + M or a little more, beyond
+// which nothing wraps around; the other sums lose one term at each end as m grows.
 #include <algorithm>
 #include <cmath>
 #include <unsupported/Eigen/FFT>
@@ -16,69 +16,90 @@ namespace {
 
 constexpr double equal_to_rounding = 1e-12;
 
-// products[m + n - 1] = sum over i of a[i + m] b[i]
-std::vector<double> sliding_products(const std::vector<double>& a, const std::vector<double>& b) {
-  const std::size_t n = a.size();
-  std::size_t length = 1;
-  while (length < 2 * n) length *= 2;
-  std::vector<double> padded_a(length, 0.0), padded_b(length, 0.0), product;
-  std::copy(a.begin(), a.end(), padded_a.begin());
-  std::copy(b.begin(), b.end(), padded_b.begin());
+// the least multiple of 4 that is at least n and has no other prime factors than 2, 3, 5
+std::size_t fast_length(std::size_t n) {
+  for (std::size_t length = (n + 3) / 4 * 4;; length += 4) {
+    std::size_t rest = length;
+    for (const std::size_t prime : {2, 3, 5})
+      while (rest % prime == 0) rest /= prime;
+    if (rest == 1) return length;
+  }
+}
+
+// products[m], and for m < 0 products[m + their number], = sum over i of a[i + m] b[i], |m| <= most
+std::vector<double> sliding_products(std::vector<double> a, std::vector<double> b, long most) {
+  const std::size_t length = fast_length(a.size() + std::size_t(most) + 1);
+  a.resize(length), b.resize(length);
   Eigen::FFT<double> fft;
+  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
   std::vector<std::complex<double>> fa, fb;
-  fft.fwd(fa, padded_a);
-  fft.fwd(fb, padded_b);
-  for (std::size_t k = 0; k < length; ++k) fa[k] *= std::conj(fb[k]);
-  fft.inv(product, fa);
-  std::vector<double> out(2 * n - 1);
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = product[(i + length - (n - 1)) % length];
+  fft.fwd(fa, a);
+  fft.fwd(fb, b);
+  for (std::size_t k = 0; k < fa.size(); ++k) fa[k] *= std::conj(fb[k]);
+  fft.inv(a, fa, long(length));
+  return a;
+}
+
+// a curve less `mean`, with room to be made as long as a transform
+std::vector<double> less(Samples y, double mean, long most) {
+  std::vector<double> out;
+  out.reserve(fast_length(y.size() + std::size_t(most) + 1));
+  for (const double v : y) out.push_back(v - mean);
   return out;
 }
 
-// sums of y and y^2 over the first i samples
-struct RunningSums {
-  std::vector<double> y, yy;
-  explicit RunningSums(const std::vector<double>& v) : y(v.size() + 1, 0.0), yy(v.size() + 1, 0.0) {
-    for (std::size_t i = 0; i < v.size(); ++i) {
-      y[i + 1] = y[i] + v[i];
-      yy[i + 1] = yy[i] + v[i] * v[i];
-    }
+double mean_of(Samples y) {
+  double mean = 0;
+  for (const double v : y) mean += v / double(y.size());
+  return mean;
+}
+
+// sums of y and y^2 over an overlap that loses samples
+struct Sums {
+  double y = 0, yy = 0;
+  void lose(double v) { y -= v, yy -= v * v; }
+};
+Sums sums_of(Samples y, double mean) {
+  Sums s;
+  for (const double v : y) s.y += v - mean, s.yy += (v - mean) * (v - mean);
+  return s;
+}
+
+// correlation over `count` samples; sums of squares below `tiny` of the whole are rounding
+struct Correlation {
+  bool centred;
+  double tiny_r, tiny_s;
+  double operator()(double rs, Sums r, Sums s, double count) const {
+    if (centred) r.yy -= r.y * r.y / count, s.yy -= s.y * s.y / count, rs -= r.y * s.y / count;
+    return r.yy <= tiny_r || s.yy <= tiny_s ? 0.0 : rs / std::sqrt(r.yy * s.yy);
   }
 };
 
 }  // namespace
 
-BestShift best_shift(const std::vector<double>& reference, const std::vector<double>& signal,
-                     long most, bool centred) {
+BestShift best_shift(Samples reference, Samples signal, long most, bool centred) {
   const long n = long(reference.size());
-  std::vector<double> r = reference, s = signal;
-  if (centred) {  // a common mean changes nothing but the rounding
-    double mean_r = 0, mean_s = 0;
-    for (long i = 0; i < n; ++i) mean_r += r[i] / double(n), mean_s += s[i] / double(n);
-    for (long i = 0; i < n; ++i) r[i] -= mean_r, s[i] -= mean_s;
-  }
-  const std::vector<double> products = sliding_products(r, s);
-  const RunningSums of_r(r), of_s(s);
-  // differences of sums below this part of the whole are rounding
-  const double tiny_r = 1e-14 * of_r.yy[n], tiny_s = 1e-14 * of_s.yy[n];
+  most = std::min(most, n - 1);
+  // a common mean changes nothing but the rounding
+  const double mean_r = centred ? mean_of(reference) : 0, mean_s = centred ? mean_of(signal) : 0;
+  const std::vector<double> products =
+      sliding_products(less(reference, mean_r, most), less(signal, mean_s, most), most);
+  const long length = long(products.size());
+  // over the overlap: for m > 0 the reference loses its start and the signal its end
+  Sums later_r = sums_of(reference, mean_r), earlier_s = sums_of(signal, mean_s);
+  Sums earlier_r = later_r, later_s = earlier_s;
+  const Correlation correlation{centred, 1e-14 * later_r.yy, 1e-14 * later_s.yy};
 
-  auto correlation = [&](long m) {
-    const long r0 = std::max(0L, m), s0 = std::max(0L, -m), count = n - std::abs(m);
-    double rr = of_r.yy[r0 + count] - of_r.yy[r0], ss = of_s.yy[s0 + count] - of_s.yy[s0];
-    double rs = products[m + n - 1];
-    if (centred) {
-      const double sum_r = of_r.y[r0 + count] - of_r.y[r0], sum_s = of_s.y[s0 + count] - of_s.y[s0];
-      rr -= sum_r * sum_r / double(count), ss -= sum_s * sum_s / double(count),
-          rs -= sum_r * sum_s / double(count);
-    }
-    return rr <= tiny_r || ss <= tiny_s ? 0.0 : rs / std::sqrt(rr * ss);
+  BestShift best{0, correlation(products[0], later_r, earlier_s, double(n))};
+  auto compete = [&](long shift, double value) {
+    if (value > best.value + equal_to_rounding) best = {shift, value};
   };
-
-  BestShift best{0, correlation(0)};
-  for (long m = 1; m <= most; ++m)
-    for (const long shift : {-m, m})
-      if (const double value = correlation(shift); value > best.value + equal_to_rounding)
-        best = {shift, value};
+  for (long m = 1; m <= most; ++m) {
+    earlier_r.lose(reference[n - m] - mean_r), later_s.lose(signal[m - 1] - mean_s);
+    later_r.lose(reference[m - 1] - mean_r), earlier_s.lose(signal[n - m] - mean_s);
+    compete(-m, correlation(products[length - m], earlier_r, later_s, double(n - m)));
+    compete(m, correlation(products[m], later_r, earlier_s, double(n - m)));
+  }
   return best;
 }
 

@@ -25,34 +25,29 @@ std::string_view trimmed(std::string_view s) {
   return s;
 }
 
-// The file stays as it was read; its cells are pieces of it, so it stays where it is.
-struct Table {
+// A table whose rows are read one after the other: of a long file only what is asked for is kept.
+class Table {
+ public:
   explicit Table(const std::string& file);
-  Table(const Table&) = delete;
-  Table& operator=(const Table&) = delete;
 
-  std::string path, text;
+  std::string path;
   std::vector<std::string> names;
-  std::vector<std::string_view> cells;  // names.size() per row
-  std::vector<int> lines;               // of the rows
-  std::size_t rows() const { return lines.size(); }
-  std::string_view cell(std::size_t row, int column) const {
-    return cells[row * names.size() + std::size_t(column)];
-  }
+  int line = 0;                         // of the row at hand
+  std::vector<std::string_view> cells;  // of that row, names.size() of them, until the next one
+  bool next_row();
+  // no fewer than there are rows left, if they are as long as the header or longer
+  std::size_t most_rows() const { return std::size_t(left_) / (2 * names.size()) + 1; }
+
+ private:
+  bool next_line();
+  std::ifstream in_;
+  std::string text_;
+  std::streamoff left_ = 0;  // bytes after the header
 };
 
-std::string contents(const std::string& path) {
-  std::ifstream in(path, std::ios::binary | std::ios::ate);
-  if (!in) throw SignalError("no-such-file", "cannot open " + path, "Check the path");
-  std::string text(std::size_t(std::max<std::streamoff>(in.tellg(), 0)), '\0');
-  in.seekg(0);
-  in.read(text.data(), std::streamsize(text.size()));
-  text.resize(std::size_t(in.gcount()));
-  return text;
-}
-
-// appends the cells of a line
-void add_cells(std::string_view line, std::vector<std::string_view>& out) {
+// replaces `out` by the cells of a line
+void split_cells(std::string_view line, std::vector<std::string_view>& out) {
+  out.clear();
   const char separator = line.find(';') != std::string_view::npos ? ';' : ',';
   for (;;) {
     const std::size_t end = line.find(separator);
@@ -62,31 +57,36 @@ void add_cells(std::string_view line, std::vector<std::string_view>& out) {
   }
 }
 
-Table::Table(const std::string& file) : path(file), text(contents(file)) {
-  std::string_view rest = text;
-  for (int number = 1; !rest.empty(); ++number) {
-    const std::size_t end = rest.find('\n');
-    const std::string_view line = rest.substr(0, end);
-    rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-    if (trimmed(line).empty() || line[0] == '#') continue;
-    const std::size_t before = cells.size();
-    add_cells(line, cells);
-    if (names.empty()) {
-      names.assign(cells.begin(), cells.end());
-      const auto left = std::size_t(std::count(rest.begin(), rest.end(), '\n')) + 1;
-      cells.clear(), cells.reserve(left * names.size()), lines.reserve(left);
-      continue;
-    }
-    if (cells.size() - before != names.size())
-      throw SignalError("ragged-signal",
-                        fmt::format("{}:{}: {} cells, the header has {}", path, number,
-                                    cells.size() - before, names.size()),
-                        "Give each row one cell for each column");
-    lines.push_back(number);
+// the next line that is neither blank nor a comment, in cells
+bool Table::next_line() {
+  while (std::getline(in_, text_)) {
+    ++line;
+    if (trimmed(text_).empty() || text_[0] == '#') continue;
+    split_cells(text_, cells);
+    return true;
   }
+  return false;
+}
+
+bool Table::next_row() {
+  if (!next_line()) return false;
+  if (cells.size() != names.size())
+    throw SignalError(
+        "ragged-signal",
+        fmt::format("{}:{}: {} cells, the header has {}", path, line, cells.size(), names.size()),
+        "Give each row one cell for each column");
+  return true;
+}
+
+Table::Table(const std::string& file) : path(file), in_(file, std::ios::binary) {
+  if (!in_) throw SignalError("no-such-file", "cannot open " + path, "Check the path");
+  if (next_line()) names.assign(cells.begin(), cells.end());
   if (names.size() < 2)
     throw SignalError("empty-signal", path + " has fewer than two columns",
                       "Give a header line and rows of numbers");
+  std::error_code ignored;
+  const auto size = fs::file_size(path, ignored);
+  left_ = ignored ? 0 : std::streamoff(size) - in_.tellg();
 }
 
 // the column of that name, with or without unit; -1 if there is none
@@ -111,8 +111,8 @@ int column(const Table& t, const std::string& name) {
   return c;
 }
 
-double number(const Table& t, std::size_t row, int column) {
-  const std::string_view cell = t.cell(row, column);
+double number(const Table& t, int column) {
+  const std::string_view cell = t.cells[std::size_t(column)];
   const char *begin = cell.data(), *end = begin + cell.size();
   if (begin != end && *begin == '+') ++begin;
   double value = 0;
@@ -120,7 +120,7 @@ double number(const Table& t, std::size_t row, int column) {
   if (error != std::errc() || stop != end || !std::isfinite(value))
     throw SignalError(
         "not-a-number",
-        fmt::format("{}:{}: '{}' in column '{}'", t.path, t.lines[row], cell, t.names[column]),
+        fmt::format("{}:{}: '{}' in column '{}'", t.path, t.line, cell, t.names[column]),
         "Write a number, or leave the cell empty to drop the row");
   return value;
 }
@@ -131,16 +131,24 @@ struct Condition {
   std::string value;
 };
 
-Signal make_signal(const Table& t, int x, int y, const Condition& only = {}) {
+Signal empty_signal(const Table& t, int x, int y) {
   const NameAndUnit of_x = name_and_unit(t.names[x]), of_y = name_and_unit(t.names[y]);
   Signal s{of_y.name, of_y.unit, of_x.unit, {}, {}};
-  if (only.column < 0) s.x.reserve(t.rows()), s.y.reserve(t.rows());
-  for (std::size_t row = 0; row < t.rows(); ++row) {
-    if (only.column >= 0 && t.cell(row, only.column) != only.value) continue;
-    if (t.cell(row, x).empty() || t.cell(row, y).empty()) continue;
-    s.x.push_back(number(t, row, x));
-    s.y.push_back(number(t, row, y));
-  }
+  s.x.reserve(t.most_rows()), s.y.reserve(t.most_rows());
+  return s;
+}
+
+// appends the row at hand, unless it has no value
+void add_row(Signal& s, const Table& t, int x, int y) {
+  if (t.cells[x].empty() || t.cells[y].empty()) return;
+  s.x.push_back(number(t, x));
+  s.y.push_back(number(t, y));
+}
+
+Signal make_signal(Table& t, int x, int y, const Condition& only = {}) {
+  Signal s = empty_signal(t, x, y);
+  while (t.next_row())
+    if (only.column < 0 || t.cells[only.column] == only.value) add_row(s, t, x, y);
   if (only.column >= 0) s.name += " " + only.value;
   if (only.column >= 0 && s.x.empty())
     throw SignalError(
@@ -151,7 +159,7 @@ Signal make_signal(const Table& t, int x, int y, const Condition& only = {}) {
 }
 
 // "y", "x:y", "y@column=value"; a name may itself hold a colon
-Signal select(const Table& t, std::string wanted) {
+Signal select(Table&& t, std::string wanted) {
   Condition only;
   if (const std::size_t at = wanted.find('@'); at != std::string::npos) {
     const std::size_t equal = wanted.find('=', at);
@@ -226,9 +234,11 @@ Signal read_signal(const std::string& where) {
 std::vector<Signal> read_all_signals(const std::string& file) {
   if (!fs::exists(file)) throw SignalError("no-such-file", "cannot find " + file, "Check the path");
   if (!is_csv(file)) return read_mme_test(file);
-  const Table t(file);
+  Table t(file);
   std::vector<Signal> out;
-  for (std::size_t c = 1; c < t.names.size(); ++c) out.push_back(make_signal(t, 0, int(c)));
+  for (std::size_t c = 1; c < t.names.size(); ++c) out.push_back(empty_signal(t, 0, int(c)));
+  while (t.next_row())
+    for (std::size_t c = 0; c < out.size(); ++c) add_row(out[c], t, 0, int(c) + 1);
   return out;
 }
 

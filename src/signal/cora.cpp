@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "signal/rating_pair.h"
-
 namespace fabrica {
 namespace {
 
@@ -102,10 +100,7 @@ CoraRating cora(const Signal& reference, const Signal& signal, const CoraOptions
   r.phase = phase_part(r.shift, pair.step * steps, o);
   r.correlation = cora_correlation(r.progression, r.size, r.phase, o);
   r.total = cora_total(r.corridor, r.correlation, o);
-  r.inner_low = corridor_edge(pair, widths.inner, -1),
-  r.inner_high = corridor_edge(pair, widths.inner, 1);
-  r.outer_low = corridor_edge(pair, widths.outer, -1),
-  r.outer_high = corridor_edge(pair, widths.outer, 1);
+  if (o.edges) r.edges = corridor_edges(pair, widths);
   return r;
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "signal/curve.h"
+#include "signal/rating_pair.h"
 
 namespace fabrica {
 
@@ -25,6 +25,7 @@ struct CoraOptions {
   double g_v = 0.50, g_g = 0.25, g_p = 0.25;
   // total
   double g_1 = 0.50, g_2 = 0.50;
+  bool edges = true;  // give the corridor, too
 };
 
 struct CoraRating {
@@ -35,7 +36,7 @@ struct CoraRating {
   double largest_k = 0;         // cross-correlation at that shift
   double t_min = 0, t_max = 0;  // interval that was used
   double y_norm = 0;
-  Signal inner_low, inner_high, outer_low, outer_high;  // corridor over the interval
+  CorridorEdges edges;  // over the interval, where asked for
 };
 
 // Rates `signal` against `reference`, sampled at the same constant step over at least the interval.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "signal/rating_pair.h"
 #include "signal/time_warping.h"
 
 namespace fabrica {
@@ -14,7 +13,7 @@ double score(double error, double most, double exponent) {
   return error >= most ? 0 : std::pow((most - error) / most, exponent);
 }
 
-std::vector<double> derivative(const std::vector<double>& y, double step) {
+std::vector<double> derivative(Samples y, double step) {
   const std::size_t n = y.size();
   std::vector<double> d(n);
   for (std::size_t i = 0; i < n; ++i) {
@@ -37,8 +36,7 @@ std::vector<double> smoothed(const std::vector<double>& y) {
   return out;
 }
 
-double slope_difference(const std::vector<double>& signal, const std::vector<double>& reference,
-                        double step) {
+double slope_difference(Samples signal, Samples reference, double step) {
   const std::vector<double> s = smoothed(derivative(signal, step)),
                             r = smoothed(derivative(reference, step));
   double difference = 0, sum = 0;
@@ -49,12 +47,12 @@ double slope_difference(const std::vector<double>& signal, const std::vector<dou
 
 // the two curves over their overlap at a shift
 RatingPair aligned(const RatingPair& p, long shift) {
-  const std::ptrdiff_t r0 = std::max(0L, shift), s0 = std::max(0L, -shift);
-  const std::ptrdiff_t count = std::ptrdiff_t(p.x.size()) - std::abs(shift);
+  const std::size_t r0 = std::max(0L, shift), s0 = std::max(0L, -shift);
+  const std::size_t count = p.x.size() - std::size_t(std::abs(shift));
   RatingPair out;
   out.step = p.step;
-  out.reference.assign(p.reference.begin() + r0, p.reference.begin() + r0 + count);
-  out.signal.assign(p.signal.begin() + s0, p.signal.begin() + s0 + count);
+  out.reference = p.reference.subspan(r0, count);
+  out.signal = p.signal.subspan(s0, count);
   return out;
 }
 
@@ -97,10 +95,7 @@ Iso18571Rating iso18571(const Signal& reference, const Signal& signal, const Iso
   r.slope_error = slope_difference(match.signal, match.reference, pair.step);
   r.slope = score(r.slope_error, o.e_s, o.k_s);
   r.total = o.w_z * r.corridor + o.w_p * r.phase + o.w_m * r.magnitude + o.w_s * r.slope;
-  r.inner_low = corridor_edge(pair, widths.inner, -1),
-  r.inner_high = corridor_edge(pair, widths.inner, 1);
-  r.outer_low = corridor_edge(pair, widths.outer, -1),
-  r.outer_high = corridor_edge(pair, widths.outer, 1);
+  if (o.edges) r.edges = corridor_edges(pair, widths);
   return r;
 }
 

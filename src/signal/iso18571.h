@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "signal/curve.h"
+#include "signal/rating_pair.h"
 
 namespace fabrica {
 
@@ -17,7 +17,8 @@ struct Iso18571Options {
   double e_s = 2.0, k_s = 1;
   double w_z = 0.4, w_p = 0.2, w_m = 0.2, w_s = 0.2;
   double least_step =
-      0;  // a finer sampling is made this coarse first (the standard: 0.1 ms); 0: never
+      0;              // a finer sampling is made this coarse first (the standard: 0.1 ms); 0: never
+  bool edges = true;  // give the corridor, too
 };
 
 struct Iso18571Rating {
@@ -26,7 +27,7 @@ struct Iso18571Rating {
   double shift = 0;  // n_eps steps, in units of x; negative: the signal is late
   double largest_correlation = 0, magnitude_error = 0, slope_error = 0;
   double t_min = 0, t_max = 0, norm = 0;
-  Signal inner_low, inner_high, outer_low, outer_high;
+  CorridorEdges edges;  // where asked for
 };
 
 // Rates `signal` against `reference`; what is asked of both and the errors are those of cora().

@@ -23,25 +23,23 @@ std::pair<std::size_t, std::size_t> samples_within(const Signal& s, double step,
   return {std::size_t(first), std::size_t(last)};
 }
 
-std::vector<double> slice(const std::vector<double>& v, std::size_t first, std::size_t last) {
-  return {v.begin() + std::ptrdiff_t(first), v.begin() + std::ptrdiff_t(last) + 1};
-}
-
 }  // namespace
 
 RatingPair rating_pair(const Signal& reference, const Signal& given, std::optional<double> t_min,
-                       std::optional<double> t_max, const std::vector<double>& deviation) {
+                       std::optional<double> t_max, Samples deviation) {
   check(reference);
   check(given);
   if (reference.unit.empty() || reference.x_unit.empty())
     throw SignalError("unit-missing", fmt::format("the reference '{}' has no unit", reference.name),
                       "Name it in the header of the column, as force_kN or force [kN], or by an "
                       "option; 1 for a number");
-  Signal signal = given;
-  if (signal.unit.empty()) signal.unit = reference.unit;
-  if (signal.x_unit.empty()) signal.x_unit = reference.x_unit;
-  if (signal.unit != reference.unit) signal = in_unit(std::move(signal), reference.unit);
-  if (signal.x_unit != reference.x_unit) signal = in_x_unit(std::move(signal), reference.x_unit);
+  const bool other_unit = !given.unit.empty() && given.unit != reference.unit;
+  const bool other_x = !given.x_unit.empty() && given.x_unit != reference.x_unit;
+  Signal converted;
+  if (other_unit || other_x) converted = given;
+  if (other_unit) converted = in_unit(std::move(converted), reference.unit);
+  if (other_x) converted = in_x_unit(std::move(converted), reference.x_unit);
+  const Signal& signal = other_unit || other_x ? converted : given;
 
   const double step = sample_interval(reference);
   if (!same_base(reference, signal))
@@ -60,32 +58,26 @@ RatingPair rating_pair(const Signal& reference, const Signal& given, std::option
                       "Give one for each sample");
   const auto [first, last] = samples_within(reference, step, t_min.value_or(reference.x.front()),
                                             t_max.value_or(reference.x.back()));
-  RatingPair pair{slice(reference.x, first, last),
-                  slice(reference.y, first, last),
-                  slice(signal.y, first, last),
-                  {},
-                  step,
-                  reference.x_unit,
-                  reference.unit};
-  if (!deviation.empty()) pair.deviation = slice(deviation, first, last);
+  RatingPair pair;
+  pair.step = step, pair.x_unit = reference.x_unit, pair.unit = reference.unit;
+  pair.x = Samples(reference.x).subspan(first, last - first + 1);
+  pair.reference = Samples(reference.y).subspan(first, pair.x.size());
+  if (other_unit) pair.converted = std::move(converted.y);
+  pair.signal = Samples(other_unit ? pair.converted : given.y).subspan(first, pair.x.size());
+  if (!deviation.empty()) pair.deviation = deviation.subspan(first, pair.x.size());
   return pair;
 }
 
 CorridorWidths corridor_widths(const RatingPair& pair, double norm, double a_0, double b_0,
                                double a_sigma, double b_sigma) {
-  const std::size_t n = pair.reference.size();
-  CorridorWidths w{std::vector<double>(n, a_0 * norm), std::vector<double>(n, b_0 * norm)};
-  for (std::size_t i = 0; i < pair.deviation.size(); ++i) {
-    w.inner[i] += a_sigma * pair.deviation[i];
-    w.outer[i] += b_sigma * pair.deviation[i];
-  }
-  for (std::size_t i = 0; i < n; ++i)
-    if (!(w.inner[i] >= 0) || !(w.outer[i] > w.inner[i]))
+  const CorridorWidths w{a_0 * norm, b_0 * norm, a_sigma, b_sigma, pair.deviation};
+  for (std::size_t i = 0; i < pair.reference.size(); ++i)
+    if (!(w.inner(i) >= 0) || !(w.outer(i) > w.inner(i)))
       throw SignalError(
           "empty-corridor",
           fmt::format(
               "at {} {} the outer corridor, half width {}, does not enclose the inner one, {}",
-              pair.x[i], pair.x_unit, w.outer[i], w.inner[i]),
+              pair.x[i], pair.x_unit, w.outer(i), w.inner(i)),
           "Make b_0 (b_sigma) larger than a_0 (a_sigma)");
   return w;
 }
@@ -94,21 +86,30 @@ double corridor_score(const RatingPair& pair, const CorridorWidths& w, double ex
   double sum = 0;
   for (std::size_t i = 0; i < pair.reference.size(); ++i) {
     const double error = std::abs(pair.signal[i] - pair.reference[i]);
-    if (error > w.outer[i]) continue;
-    sum += error < w.inner[i]
-               ? 1
-               : std::pow((w.outer[i] - error) / (w.outer[i] - w.inner[i]), exponent);
+    const double inner = w.inner(i), outer = w.outer(i);
+    if (error > outer) continue;
+    sum += error < inner ? 1 : std::pow((outer - error) / (outer - inner), exponent);
   }
   return sum / double(pair.reference.size());
 }
 
-Signal corridor_edge(const RatingPair& pair, const std::vector<double>& width, double sign) {
-  Signal edge{"corridor", pair.unit, pair.x_unit, pair.x, pair.reference};
-  for (std::size_t i = 0; i < edge.size(); ++i) edge.y[i] += sign * width[i];
-  return edge;
+CorridorEdges corridor_edges(const RatingPair& pair, const CorridorWidths& w) {
+  auto edge = [&](auto&& offset) {
+    Signal s{"corridor",
+             pair.unit,
+             pair.x_unit,
+             {pair.x.begin(), pair.x.end()},
+             {pair.reference.begin(), pair.reference.end()}};
+    for (std::size_t i = 0; i < s.size(); ++i) s.y[i] += offset(i);
+    return s;
+  };
+  return {edge([&](std::size_t i) { return -w.outer(i); }),
+          edge([&](std::size_t i) { return -w.inner(i); }),
+          edge([&](std::size_t i) { return w.inner(i); }),
+          edge([&](std::size_t i) { return w.outer(i); })};
 }
 
-double reference_norm(const std::vector<double>& reference) {
+double reference_norm(Samples reference) {
   double largest = 0;
   for (const double y : reference) largest = std::max(largest, std::abs(y));
   if (largest == 0)

@@ -3,29 +3,42 @@
 // corridor around the reference and its score, the search for the shift that aligns two curves
 // best.
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "signal/curve.h"
 
 namespace fabrica {
 
-// n samples of both curves at one constant step.
+using Samples = std::span<const double>;
+
+// n samples of both curves at one constant step: pieces of the curves that were given, which must
+// outlive them, or of a converted one.
 struct RatingPair {
-  std::vector<double> x, reference, signal;
-  std::vector<double> deviation;  // of the reference, or empty
+  Samples x, reference, signal;
+  Samples deviation;  // of the reference, or empty
   double step = 0;
   std::string x_unit, unit;
+  std::vector<double> converted;  // the signal in the reference's unit, where it had another
+
+  RatingPair() = default;
+  RatingPair(RatingPair&&) = default;  // a moved vector stays where it is
+  RatingPair& operator=(RatingPair&&) = default;
 };
 
 // Checks both curves and their units, brings the signal to the units of the reference, and crops
 // both to [t_min, t_max] (not given: the whole record). A signal without a unit is taken to have
 // the reference's. Errors: see cora().
 RatingPair rating_pair(const Signal& reference, const Signal& signal, std::optional<double> t_min,
-                       std::optional<double> t_max, const std::vector<double>& deviation = {});
+                       std::optional<double> t_max, Samples deviation = {});
 
-// Half widths of a corridor at each sample.
+// Half widths of a corridor at each sample: a constant and a multiple of the deviation.
 struct CorridorWidths {
-  std::vector<double> inner, outer;
+  double inner_part = 0, outer_part = 0, inner_sigma = 0, outer_sigma = 0;
+  Samples deviation;
+  double sigma(std::size_t i) const { return deviation.empty() ? 0 : deviation[i]; }
+  double inner(std::size_t i) const { return inner_part + inner_sigma * sigma(i); }
+  double outer(std::size_t i) const { return outer_part + outer_sigma * sigma(i); }
 };
 
 // a_0 Y + a_sigma sigma and b_0 Y + b_sigma sigma; "empty-corridor" unless 0 <= inner < outer at
@@ -37,11 +50,14 @@ CorridorWidths corridor_widths(const RatingPair& pair, double norm, double a_0, 
 // ((outer - |difference|) / (outer - inner))^exponent between.
 double corridor_score(const RatingPair& pair, const CorridorWidths& widths, double exponent);
 
-// reference + sign * width, as a curve to draw.
-Signal corridor_edge(const RatingPair& pair, const std::vector<double>& width, double sign);
+// reference - outer, - inner, + inner, + outer, as curves to draw.
+struct CorridorEdges {
+  Signal outer_low, inner_low, inner_high, outer_high;
+};
+CorridorEdges corridor_edges(const RatingPair& pair, const CorridorWidths& widths);
 
 // Largest absolute value; "flat-reference" if that is zero.
-double reference_norm(const std::vector<double>& reference);
+double reference_norm(Samples reference);
 
 // The shift m, |m| <= most, with the largest correlation of reference[i + m] and signal[i] over the
 // overlap, for m > 0 the signal being early. Raw: sum(xy)/sqrt(sum(xx) sum(yy)); centred:
@@ -51,7 +67,6 @@ struct BestShift {
   long shift = 0;
   double value = 0;
 };
-BestShift best_shift(const std::vector<double>& reference, const std::vector<double>& signal,
-                     long most, bool centred);
+BestShift best_shift(Samples reference, Samples signal, long most, bool centred);
 
 }  // namespace fabrica

@@ -241,6 +241,37 @@ TEST_CASE("time warping: sums along the path are those of the full table traced 
   CHECK(std::abs(sums.reference - reference) < 1e-12);
 }
 
+// every correlation summed as its definition says
+TEST_CASE("the best shift is that of the sums written out, raw and centred, early and late") {
+  for (const int late : {-13, 0, 9})
+    for (const bool centred : {false, true}) {
+      CAPTURE(late);
+      CAPTURE(centred);
+      std::vector<double> r, s;
+      for (int i = 0; i < 101; ++i) {
+        auto y = [](double t) { return 3 + std::exp(-std::pow((t - 50) / 12, 2)); };
+        r.push_back(y(i)), s.push_back(0.8 * y(i - late) + 0.01 * std::sin(2.0 * i));
+      }
+      const int n = int(r.size()), most = 20;
+      int shift = 0;
+      double largest = -2;
+      for (int m = -most; m <= most; ++m) {
+        double c = 0, sr = 0, ss = 0, rr = 0, rs = 0, s2 = 0;
+        for (int i = std::max(0, -m); i < n && i + m < n; ++i) {
+          const double a = r[i + m], b = s[i];
+          c += 1, sr += a, ss += b, rr += a * a, rs += a * b, s2 += b * b;
+        }
+        const double value =
+            centred ? (rs - sr * ss / c) / std::sqrt((rr - sr * sr / c) * (s2 - ss * ss / c))
+                    : rs / std::sqrt(rr * s2);
+        if (value > largest) largest = value, shift = m;
+      }
+      const BestShift best = best_shift(r, s, most, centred);
+      CHECK(best.shift == shift);
+      CHECK(std::abs(best.value - largest) < 1e-11);
+    }
+}
+
 TEST_CASE(
     "ISO 18571: sampling finer than 0.1 ms is thinned on request, with nearly the same score") {
   Signal x{"x", "kN", "s", {}, {}}, y;
@@ -254,6 +285,6 @@ TEST_CASE(
   Iso18571Options o;
   o.least_step = 1e-4;
   const Iso18571Rating r = iso18571(x, y, o);
-  CHECK(r.inner_low.size() == 2001);
+  CHECK(r.edges.inner_low.size() == 2001);
   CHECK(std::abs(r.slope - 0.9) < 1e-3);  // slopes differ by a fifth: 1 - 0.2 / 2
 }

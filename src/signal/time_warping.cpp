@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace fabrica {
 namespace {
@@ -49,7 +50,7 @@ void advance(Diagonal& now, const Diagonal& before, const Diagonal& earlier, con
 
 }  // namespace
 
-WarpedSums warped_sums(const std::vector<double>& a, const std::vector<double>& b, long band) {
+WarpedSums warped_sums(std::span<const double> a, std::span<const double> b, long band) {
   const long n = long(a.size());
   Diagonal now(n), before(n), earlier(n);
   const std::vector<double> reversed(b.rbegin(), b.rend());

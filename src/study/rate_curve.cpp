@@ -31,10 +31,10 @@ Rating result(std::vector<std::pair<std::string, double>> parts, double low, dou
   return {std::move(parts),
           low,
           high,
-          curve_of(c.inner_low),
-          curve_of(c.inner_high),
-          curve_of(c.outer_low),
-          curve_of(c.outer_high)};
+          curve_of(c.edges.inner_low),
+          curve_of(c.edges.inner_high),
+          curve_of(c.edges.outer_low),
+          curve_of(c.edges.outer_high)};
 }
 
 }  // namespace
