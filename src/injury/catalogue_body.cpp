@@ -33,6 +33,7 @@ Finding of_deflection(const Subject&, const Channels& c) {
   return {d,
           "",
           {{"AIS3+ Hybrid III", logistic(-3.7124 + 0.0475 * d), "Eppinger et al. 1999"},
+           {"AIS4+ Hybrid III", logistic(-5.0952 + 0.0475 * d), "Eppinger et al. 1999"},
            {"AIS3+ Hybrid III, NCAP", logistic(-10.5456 + 1.568 * std::pow(d, 0.4612)),
             "NHTSA NCAP 2008"}}};
 }
@@ -62,14 +63,20 @@ Finding of_vc(const Subject& s, const Channels& c) {
 }
 
 Finding of_chest_clip(const Subject&, const Channels& c) {
-  return {clip(in_g(filtered_resultant(c, "chest", 180)), 0.003), "", {}};
+  const Signal a = in_g(filtered_resultant(c, "chest", 180));
+  return {clip(a, 0.003), fmt::format("in all {:.1f} g", clip(a, 0.003, Clip::cumulative)), {}};
 }
 
 Finding of_cti(const Subject&, const Channels& c) {
-  return {combined_thoracic_index(clip(in_g(filtered_resultant(c, "chest", 180)), 0.003),
-                                  deflection_mm(c)),
-          "intercepts 85 g, 102 mm (not confirmed)",
-          {}};
+  const double v = combined_thoracic_index(clip(in_g(filtered_resultant(c, "chest", 180)), 0.003),
+                                           deflection_mm(c));
+  const char* source = "Kleinberger et al. 1998; read in one program only";
+  return {v,
+          "intercepts of the Hybrid III 50M: 85 g, 102 mm",
+          {{"AIS2+", logistic(-4.847 + 6.036 * v), source},
+           {"AIS3+", logistic(-8.224 + 7.125 * v), source},
+           {"AIS4+", logistic(-9.872 + 7.125 * v), source},
+           {"AIS5+", logistic(-14.242 + 6.589 * v), source}}};
 }
 
 Finding of_pelvis(const Subject&, const Channels& c) {
@@ -114,7 +121,7 @@ std::vector<Measure> neck_measures() {
            "CFC 600",
            "max Fz/Fint + Moc/Mint, Moc = My - e Fx",
            1.0,
-           "FMVSS 208 (not confirmed)",
+           "49 CFR 571.208 S6.6",
            "Eppinger et al. 1999, NHTSA",
            of_nij}};
 }
@@ -127,7 +134,7 @@ std::vector<Measure> thorax_measures() {
            "CFC 180",
            "max |D|",
            63,
-           "FMVSS 208 (not confirmed); 76 in the former rule",
+           "49 CFR 571.208 S6.4(b); 76 mm in (a); UN R94, 5.2.1.4: 42 mm",
            "FMVSS 208",
            of_deflection},
           {"Cmax",
@@ -138,7 +145,7 @@ std::vector<Measure> thorax_measures() {
            "100 max |D| / chest depth",
            {},
            "",
-           "Kent and Patrie 2005; Kroell et al. 1974 (AIS, not confirmed)",
+           "Kent and Patrie 2005; AIS = -3.78 + 19.56 C: Kroell et al. 1974",
            of_compression},
           {"VC",
            "thorax",
@@ -147,7 +154,7 @@ std::vector<Measure> thorax_measures() {
            "CFC 180",
            "max s V D / D_ref",
            1.0,
-           "Viano and Lau 1988: about 25 % AIS4+ (not confirmed)",
+           "UN R94, 5.2.1.5",
            "Lau and Viano 1986; Euro NCAP TB 021",
            of_vc},
           {"a3ms chest",
@@ -157,8 +164,8 @@ std::vector<Measure> thorax_measures() {
            "CFC 180",
            "highest level exceeded for 3 ms without a break",
            60,
-           "FMVSS 208, former rule",
-           "FMVSS 208",
+           "49 CFR 571.208 S6.3",
+           "NHTSA, program CLIP 2.1",
            of_chest_clip},
           {"CTI",
            "thorax",
@@ -167,7 +174,7 @@ std::vector<Measure> thorax_measures() {
            "CFC 180",
            "A_3ms/85 g + D/102 mm",
            1.0,
-           "Kleinberger et al. 1998 (not confirmed)",
+           "Kleinberger et al. 1998: proposed, not made a rule",
            "Kleinberger et al. 1998, NHTSA",
            of_cti}};
 }
@@ -192,8 +199,8 @@ std::vector<Measure> leg_measures() {
                    "CFC 600",
                    "max compression",
                    10,
-                   "FMVSS 208 (2250 lbf)",
-                   "FMVSS 208",
+                   "49 CFR 571.208 S6.5 (2250 lbf)",
+                   "49 CFR 571.208",
                    left ? of_femur<true> : of_femur<false>});
     out.push_back({"tibia force " + side,
                    "leg",
@@ -202,7 +209,7 @@ std::vector<Measure> leg_measures() {
                    "CFC 600",
                    "max compression",
                    8,
-                   "UN R94 (not confirmed)",
+                   "UN R94, 5.2.1.7",
                    "UN R94",
                    left ? of_tibia_force<true> : of_tibia_force<false>});
     out.push_back({"tibia index " + side,
@@ -212,7 +219,7 @@ std::vector<Measure> leg_measures() {
                    "CFC 600",
                    "max sqrt(Mx^2+My^2)/Mc + |Fz|/Fc",
                    1.3,
-                   "UN R94 (not confirmed)",
+                   "UN R94, 5.2.1.8",
                    "Euro NCAP TB 021",
                    left ? of_tibia_index<true> : of_tibia_index<false>});
   }

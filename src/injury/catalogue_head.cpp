@@ -45,7 +45,10 @@ Finding hic36(const Subject&, const Channels& c) {
 }
 
 Finding head_clip(const Subject&, const Channels& c) {
-  return {clip(in_g(filtered_resultant(c, "head", 1000)), 0.003), "", {}};
+  const Signal a = in_g(filtered_resultant(c, "head", 1000));
+  return {clip(a, 0.003, Clip::cumulative),
+          fmt::format("without a break {:.1f} g", clip(a, 0.003)),
+          {}};
 }
 
 Finding of_bric(const Subject&, const Channels& c) {
@@ -74,12 +77,12 @@ Finding of_damage(const Subject&, const Channels& c) {
 std::vector<Measure> head_measures() {
   const std::string hic_formula = "max (t2-t1) [1/(t2-t1) integral a dt]^2.5, t2-t1 <= ";
   return {{"HIC15", "head", "1", accelerations, "CFC 1000", hic_formula + "15 ms", 700,
-           "FMVSS 208 (not confirmed)", "Versace 1971, SAE 710881; FMVSS 208", hic15},
+           "49 CFR 571.208 S6.2(b)", "Versace 1971, SAE 710881; FMVSS 208", hic15},
           {"HIC36", "head", "1", accelerations, "CFC 1000", hic_formula + "36 ms", 1000,
-           "FMVSS 208, former rule", "Versace 1971, SAE 710881; FMVSS 208", hic36},
+           "49 CFR 571.208 S6.2(a), before HIC15", "Versace 1971, SAE 710881; FMVSS 208", hic36},
           {"a3ms head", "head", "g", accelerations, "CFC 1000",
-           "highest level exceeded for 3 ms without a break", 80, "UN R94 (not confirmed)",
-           "SAE J1727", head_clip},
+           "highest level exceeded for 3 ms in all", 80, "UN R94, 5.2.1.1", "UN R94, annex 4",
+           head_clip},
           {"BrIC",
            "head",
            "1",

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 
 #include "signal/units.h"
 
@@ -59,36 +58,44 @@ Hic hic(const Signal& given, double window) {
   return best;
 }
 
-double clip(const Signal& given, double duration) {
+namespace {
+
+// where a straight line from a to b, one of them below `level`, passes it: the part of the step
+// that is not below
+double part_above(double a, double b, double level) {
+  return std::abs(std::max(a, b) - level) / std::abs(b - a);
+}
+
+// Time in steps for which the polygon through y is at or above `level`: the longest stay, or all.
+double time_above(const std::vector<double>& y, double level, bool cumulative) {
+  double longest = 0, now = 0, all = 0;
+  for (std::size_t i = 1; i < y.size(); ++i) {
+    const bool was = y[i - 1] >= level, is = y[i] >= level;
+    const double part = was && is ? 1 : was || is ? part_above(y[i - 1], y[i], level) : 0;
+    now = was ? now + part : part;
+    all += part;
+    longest = std::max(longest, now);
+  }
+  return cumulative ? all : longest;
+}
+
+}  // namespace
+
+double clip(const Signal& given, double duration, Clip kind) {
   const Signal s = in_x_unit(given, "s");
-  const double interval = sample_interval(s);
-  const double steps = duration / interval;
-  const std::size_t whole = std::size_t(steps + 1e-6);
-  const double part = std::max(0.0, steps - double(whole));
-  if (whole + 1 >= s.size())
+  const double steps = duration / sample_interval(s) * (1 - 1e-9);
+  if (steps > double(s.size() - 1))
     throw SignalError("record-too-short",
                       "'" + s.name + "' is shorter than the duration of the clip",
                       "Give the whole record");
-  // least value of samples i ... i + whole, by a queue of falling candidates, and of the fraction
-  // of a step on either side of them
-  double best = -INFINITY;
-  std::deque<std::size_t> least;
-  for (std::size_t j = 0; j < s.size(); ++j) {
-    while (!least.empty() && s.y[least.back()] >= s.y[j]) least.pop_back();
-    least.push_back(j);
-    if (j < whole) continue;
-    const std::size_t i = j - whole;
-    while (least.front() < i) least.pop_front();
-    const double inside = s.y[least.front()];
-    if (part < 1e-6) {
-      best = std::max(best, inside);
-      continue;
-    }
-    if (j + 1 < s.size())
-      best = std::max(best, std::min(inside, s.y[j] + part * (s.y[j + 1] - s.y[j])));
-    if (i > 0) best = std::max(best, std::min(inside, s.y[i] + part * (s.y[i - 1] - s.y[i])));
+  // the time falls as the level rises: halve what is left until nothing is
+  const auto [least, largest] = std::minmax_element(s.y.begin(), s.y.end());
+  double low = *least, high = *largest;
+  for (int i = 0; i < 60 && high > low; ++i) {
+    const double middle = low + 0.5 * (high - low);
+    (time_above(s.y, middle, kind == Clip::cumulative) >= steps ? low : high) = middle;
   }
-  return best;
+  return time_above(s.y, high, kind == Clip::cumulative) >= steps ? high : low;
 }
 
 double bric(const std::array<Signal, 3>& angular_velocity) {

@@ -106,6 +106,39 @@ TEST_CASE("measures: the risks of HIC15 at 300, 700 and 1000 are the tabulated o
   }
 }
 
+// 49 CFR 571.208 S6.2 to S6.6 and UN R94, 5.2.1; sources in docs/theory/injury.md
+TEST_CASE("measures: limits are those of the regulations") {
+  const std::pair<const char*, double> limits[]{
+      {"HIC15", 700},           {"HIC36", 1000},
+      {"a3ms head", 80},        {"Nij", 1},
+      {"chest deflection", 63}, {"VC", 1},
+      {"a3ms chest", 60},       {"femur force left", 10},
+      {"tibia force right", 8}, {"tibia index left", 1.3}};
+  for (const auto& [name, limit] : limits) {
+    CAPTURE(name);
+    const Judged j = of(judge({}, {}), name);
+    REQUIRE(j.measure->limit);
+    CHECK(*j.measure->limit == limit);
+    CHECK(j.measure->limit_source.find("confirmed") == std::string::npos);
+  }
+}
+
+// 40 % of compression is AIS 4 and 30 % AIS 2 (to 0.1); CTI: 1/(1 + exp(8.224 - 7.125 CTI))
+TEST_CASE("measures: severity after Kroell and the risk of CTI at known loads") {
+  const std::vector<Judged> all =
+      judge({.chest_depth = 230}, {{"chest.deflection", pulse("mm", 92)},
+                                   {"chest.ax", pulse("g", 0)},
+                                   {"chest.ay", pulse("g", 0)},
+                                   {"chest.az", pulse("g", 0)}});
+  REQUIRE(of(all, "Cmax").finding);
+  CHECK(of(all, "Cmax").finding->detail.find("Kroell 4.0") != std::string::npos);
+  REQUIRE(of(all, "CTI").finding);
+  CHECK(std::abs(of(all, "CTI").finding->value - 92 / 102.0) < 1e-3);
+  const Risk& serious = of(all, "CTI").finding->risks[1];
+  CHECK(serious.event == "AIS3+");
+  CHECK(std::abs(serious.probability - 0.142152) < 2e-3);
+}
+
 TEST_CASE("measures: channel codes of ISO-MME name their roles") {
   CHECK(role_of_code("11HEAD0000H3ACXA") == "head.ax");
   CHECK(role_of_code("11HEAD0000H3AVZP") == "head.wz");

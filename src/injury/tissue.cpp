@@ -53,9 +53,10 @@ double volume_fraction_above(const std::vector<double>& values, const std::vecto
 }
 
 double rib_fracture_probability(double strain, double age) {
-  return strain <= 0
-             ? 0
-             : -std::expm1(-std::pow(strain / std::exp(-2.9866 - 0.0130 * age), 1 / 0.2026));
+  constexpr double deviation = 0.3026;  // of the logarithm of the strain at fracture
+  const double median = -2.9866 - 0.0130 * age;
+  return strain <= 0 ? 0
+                     : 0.5 * std::erfc(-(std::log(strain) - median) / (std::sqrt(2.0) * deviation));
 }
 
 double at_least(const std::vector<double>& p, int k) {

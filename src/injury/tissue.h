@@ -1,10 +1,11 @@
 #pragma once
 // Measures from the elements of a tissue, each with its volume and the largest value over time.
-//   MPS_q   the q-quantile by volume of the first principal strain;  CSDM(x) the volume fraction
-//   above x ribs    p = 1 - exp(-(e / exp(-2.9866 - 0.0130 age))^(1/0.2026)), e the strain of a
-//   rib's cortical bone, age in
-//           years (after Forman et al. 2012, Larsson et al. 2021; coefficients not confirmed in the
-//           source); P(N >= k) of independent ribs by the Poisson-binomial recursion
+//   MPS_q    the q-quantile by volume of the first principal strain
+//   CSDM(x)  the volume fraction above x
+//   ribs     p = Phi((ln e + 2.9866 + 0.0130 age) / 0.3026), e the strain of a rib's cortical bone,
+//            age in years, Phi the normal distribution (Larsson et al. 2021, doi
+//            10.3389/fbioe.2021.677768); P(N >= k) of independent ribs by the Poisson-binomial
+//            recursion (Forman et al. 2012)
 #include <vector>
 
 namespace fabrica {

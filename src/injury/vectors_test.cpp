@@ -73,6 +73,30 @@ TEST_CASE("3 ms clip of a half-sine, also where 3 ms is no whole number of steps
   CHECK(close(clip(half_sine("g", 60, 0.020, 0.04, 0.7e-4), 0.003), 58.3421952));
 }
 
+// A triangle of base 10 ms and height 100 is 3 ms wide at 70; with a second one of base 5 ms and
+// height 80 it is 3 ms wide in all where 10 (1 - L/100) + 5 (1 - L/80) = 3, L = 12/0.1625. The
+// duration is met to 1e-9 of it, which is 3e-8 of these levels.
+TEST_CASE(
+    "3 ms clip: the level between samples is exact, and two peaks count together where asked") {
+  auto triangle = [](double t, double middle, double base, double height) {
+    return std::max(0.0, height * (1 - std::abs(t - middle) / (base / 2)));
+  };
+  const Signal one =
+      sampled("g", 0.04, 1e-3, [&](double t) { return triangle(t, 0.010, 0.010, 100); });
+  CHECK(std::abs(clip(one, 0.003) - 70) < 1e-7);
+  CHECK(std::abs(clip(one, 0.003, Clip::cumulative) - 70) < 1e-7);
+  const Signal two = sampled("g", 0.04, 0.5e-3, [&](double t) {
+    return triangle(t, 0.010, 0.010, 100) + triangle(t, 0.030, 0.005, 80);
+  });
+  CHECK(std::abs(clip(two, 0.003) - 70) < 1e-7);
+  CHECK(std::abs(clip(two, 0.003, Clip::cumulative) - 12 / 0.1625) < 1e-7);
+  // a plateau that lasts for exactly 3 ms
+  const Signal flat =
+      sampled("g", 0.04, 1e-3, [](double t) { return t > 0.0095 && t < 0.0135 ? 50.0 : 0.0; });
+  CHECK(std::abs(clip(flat, 0.003) - 50) < 1e-7);
+  CHECK_THROWS_AS(clip(flat, 0.05), SignalError);
+}
+
 TEST_CASE("BrIC of angular velocities with known peaks") {
   auto of = [](double x, double y, double z) {
     return bric({constant("rad/s", x), constant("rad/s", y), constant("rad/s", z)});
@@ -136,9 +160,17 @@ TEST_CASE("ribs: probability of at least k fractures is exact") {
   CHECK(std::abs(at_least(p, 0) - 1) < 1e-12);
 }
 
-TEST_CASE("ribs: the risk of one rib rises with strain and age, and is a half at its median") {
-  const double median = std::exp(-2.9866 - 0.0130 * 40) * std::pow(std::log(2.0), 0.2026);
+// Larsson et al. 2021: ln e at fracture is normal, median -2.9866 - 0.0130 age, deviation 0.3026.
+// At 25, 45, 65 years half of the ribs break at 3.65, 2.81, 2.17 %; Phi(-1) = 0.158655254,
+// Phi(1.6448536) = 0.95.
+TEST_CASE("ribs: the risk of one rib is log-normal in strain, with a median that falls with age") {
+  CHECK(close(rib_fracture_probability(0.0364578, 25), 0.5));
+  CHECK(close(rib_fracture_probability(0.0281108, 45), 0.5));
+  CHECK(close(rib_fracture_probability(0.0216749, 65), 0.5));
+  const double median = std::exp(-2.9866 - 0.0130 * 40);
   CHECK(std::abs(rib_fracture_probability(median, 40) - 0.5) < 1e-12);
+  CHECK(close(rib_fracture_probability(median * std::exp(-0.3026), 40), 0.158655254));
+  CHECK(close(rib_fracture_probability(median * std::exp(1.6448536 * 0.3026), 40), 0.95));
   CHECK(rib_fracture_probability(0.02, 70) > rib_fracture_probability(0.02, 30));
   CHECK(rib_fracture_probability(0, 30) == 0);
 }
