@@ -299,6 +299,8 @@ int run_command(const RunCommand& c) {
 
   const auto list = findings(simulation);
   auto j = summary(simulation, wall, first_cycle);
+  j["threads"] = options.threads;
+  j["version"] = FABRICA_VERSION;
   j["findings"] = list;
   std::ofstream(c.out + "/summary.json") << j.dump(2) << "\n";
   for (const auto& f : list) fmt::print("check: {}\n", f);

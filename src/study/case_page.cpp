@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+
 #include "study/rate_curve.h"
 
 namespace fabrica::study {
@@ -11,7 +14,10 @@ std::string figure(double v) { return fmt::format("{:.5g}", v); }
 std::string rating(double v) { return fmt::format("{:.3f}", v); }
 std::string marked(State s) { return fmt::format("<span class=\"{0}\">{0}</span>", state_name(s)); }
 std::string with_unit(const std::string& name, const std::string& unit) {
-  return unit.empty() ? name : name + " [" + unit + "]";
+  return unit.empty() || unit == "1" ? name : name + " [" + unit + "]";
+}
+std::string figure(double v, const std::string& unit) {
+  return figure(v) + (unit == "1" ? "" : " " + escaped(unit));
 }
 std::string method_name(const std::string& method) {
   return method == "cora" ? "CORA 3.6" : method == "iso18571" ? "ISO/TS 18571:2014" : method;
@@ -63,11 +69,10 @@ std::string signal_section(const SignalResult& s, const Chart& chart,
   std::string out = "<h3>" + escaped(s.name) + "</h3>\n" + place_of(chart);
   std::vector<std::vector<std::string>> rows;
   const std::string at = s.x_name.empty() ? time_unit : s.x_unit;
-  rows.push_back(
-      {"model", figure(s.peak) + " " + escaped(s.unit), figure(s.peak_at) + " " + escaped(at)});
+  rows.push_back({"model", figure(s.peak, s.unit), figure(s.peak_at, at)});
   if (s.reference_peak)
-    rows.push_back({"reference", figure(*s.reference_peak) + " " + escaped(s.unit),
-                    figure(s.reference_peak_at.value_or(0)) + " " + escaped(at)});
+    rows.push_back({"reference", figure(*s.reference_peak, s.unit),
+                    figure(s.reference_peak_at.value_or(0), at)});
   out += table({"", "peak", "at"}, rows);
   if (!s.filter.empty())
     out += "<p class=\"note\">Filter: " + escaped(s.filter) + " (SAE J211).</p>\n";
@@ -115,7 +120,7 @@ std::string run_section(const Outcome& o, const PageExtras& e) {
                               : escaped(v.is_string() ? v.get<std::string>() : v.dump())});
   };
   row("ended", "ending"), row("time reached", "time"), row("cycles", "cycles");
-  row("elements", "elements"), row("run time [s]", "wall_time");
+  row("elements", "elements"), row("run time [s]", "wall_time"), row("threads", "threads");
   row("element updates a second", "updates_per_second");
   row("energy ratio", "energy_ratio"), row("hourglass energy", "hourglass_energy");
   row("internal energy", "internal_energy"), row("added mass [%]", "added_mass_percent");
@@ -160,6 +165,7 @@ std::string case_page(const Case& c, const Outcome& o, const PageExtras& e) {
     charts.push_back(energy);
   }
   body += run_section(o, e);
+  if (!e.readme.empty()) body += "<h2>Notes</h2>\n<pre>" + escaped(e.readme) + "</pre>\n";
   body += fmt::format("<p class=\"note\">Fabrica {}; inputs {}; finished {}.</p>\n",
                       escaped(o.version), escaped(o.fingerprint), escaped(o.finished));
   return page(c.title, "../assets", body, charts);
@@ -194,26 +200,37 @@ std::string index_page(const std::vector<Outcome>& outcomes) {
   return page("Cases", "assets", body, {});
 }
 
-std::string rating_table(const std::vector<Outcome>& outcomes) {
-  std::string out = fmt::format("{:<28} {:<30} {:<10} {:>7}  {:<13} {:>9}\n", "case", "signal",
-                                "method", "rating", "", "published");
-  std::size_t lines = 0;
+std::string rating_table(const std::vector<Outcome>& outcomes,
+                         const std::vector<std::pair<std::string, double>>& published) {
+  // rows of cells: case, signal, method, rating, word, published
+  std::vector<std::array<std::string, 6>> rows{
+      {"case", "signal", "method", "rating", "", "published"}};
+  std::vector<std::string> found;
   for (const Outcome& o : outcomes)
     for (const SignalResult& s : o.signals) {
-      for (const auto& [method, parts] : s.ratings) {
-        const double total = parts.back().second;
-        out += fmt::format("{:<28} {:<30} {:<10} {:>7.3f}  {:<13} {:>9}\n", o.name, s.name, method,
-                           total, rating_word(method, total),
-                           s.paper_total && method == "cora" ? rating(*s.paper_total) : "-");
-        ++lines;
-      }
-      if (s.ratings.empty()) {
-        out += fmt::format("{:<28} {:<30} {} (peak {:.4g} {} at {:.4g})\n", o.name, s.name,
-                           s.remark, s.peak, s.unit, s.peak_at);
-        ++lines;
-      }
+      found.push_back(s.paper);
+      for (const auto& [method, parts] : s.ratings)
+        rows.push_back({o.name, s.name, method, rating(parts.back().second),
+                        rating_word(method, parts.back().second),
+                        s.paper_total && method == "cora" ? rating(*s.paper_total) : "-"});
+      if (s.ratings.empty())
+        rows.push_back(
+            {o.name, s.name, "-", "-",
+             fmt::format("{} (peak {:.4g} {} at {:.4g})", s.remark, s.peak, s.unit, s.peak_at),
+             s.paper_total ? rating(*s.paper_total) : "-"});
     }
-  return lines ? out : "no signal has been computed yet: run `fabrica validate`\n";
+  if (rows.size() == 1) return "no signal has been computed yet: run `fabrica validate`\n";
+  for (const auto& [name, total] : published)
+    if (std::find(found.begin(), found.end(), name) == found.end())
+      rows.push_back({"-", name, "cora", "-", "no case yet", rating(total)});
+  std::array<std::size_t, 6> width{};
+  for (const auto& row : rows)
+    for (std::size_t i = 0; i < row.size(); ++i) width[i] = std::max(width[i], row[i].size());
+  std::string out;
+  for (const auto& r : rows)
+    out += fmt::format("{:<{}}  {:<{}}  {:<{}}  {:>{}}  {:<{}}  {:>{}}\n", r[0], width[0], r[1],
+                       width[1], r[2], width[2], r[3], width[3], r[4], width[4], r[5], width[5]);
+  return out;
 }
 
 }  // namespace fabrica::study

@@ -14,6 +14,7 @@ struct PageExtras {
   std::vector<std::pair<std::string, Curve>> energies;  // over time, of glstat
   std::string picture;                                  // file name beside the page; empty: none
   std::string picture_remark;                           // why there is none
+  std::string readme;                                   // what the case's folder says of itself
   std::vector<std::string> files;                       // that the run read
 };
 
@@ -23,7 +24,9 @@ std::string case_page(const Case& c, const Outcome& outcome, const PageExtras& e
 // OUT/index.html
 std::string index_page(const std::vector<Outcome>& outcomes);
 
-// All ratings as text, the published one beside ours where there is one.
-std::string rating_table(const std::vector<Outcome>& outcomes);
+// All ratings as text, the published one beside ours where there is one, then the rows of
+// `published` ("test/signal", total) that no signal names.
+std::string rating_table(const std::vector<Outcome>& outcomes,
+                         const std::vector<std::pair<std::string, double>>& published);
 
 }  // namespace fabrica::study

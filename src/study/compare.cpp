@@ -112,6 +112,11 @@ void read_corridor(const SignalSpec& s, Channels& channels, const Case& c, Signa
     throw StudyError(c.file, s.line, "signal.corridor",
                      "is empty, or its two edges have different abscissas",
                      "Give two columns of one file");
+  for (std::size_t i = 0; i < r.low.y.size(); ++i)
+    if (r.low.y[i] > r.high.y[i])
+      throw StudyError(c.file, s.line, "signal.corridor",
+                       fmt::format("its lower edge lies above the upper one at {:g}", r.low.x[i]),
+                       "Name the lower edge first");
 }
 
 void rate(const SignalSpec& s, const std::string& time_unit, SignalResult& r) {
@@ -159,14 +164,21 @@ SignalResult compare_signal(const SignalSpec& s, Channels& channels, const Case&
   return r;
 }
 
-double published_rating(const std::string& row, const std::string& file, int line) {
+std::vector<std::pair<std::string, double>> published_ratings() {
   const body::Table table("paper/table1_cora.csv");
+  std::vector<std::pair<std::string, double>> out;
+  for (int i = 0; i < table.rows(); ++i)
+    out.emplace_back(table.text(i, "test") + "/" + table.text(i, "signal"),
+                     table.number(i, "total"));
+  return out;
+}
+
+double published_rating(const std::string& row, const std::string& file, int line) {
+  const std::string test = row.substr(0, row.find('/'));
   std::string list;
-  for (int i = 0; i < table.rows(); ++i) {
-    const std::string name = table.text(i, "test") + "/" + table.text(i, "signal");
-    if (name == row) return table.number(i, "total");
-    if (table.text(i, "test") == row.substr(0, row.find('/')) || row.find('/') == std::string::npos)
-      list += (list.empty() ? "" : "; ") + name;
+  for (const auto& [name, total] : published_ratings()) {
+    if (name == row) return total;
+    if (name.starts_with(test + "/") || test == row) list += (list.empty() ? "" : "; ") + name;
   }
   throw StudyError(file, line, "signal.paper",
                    "'" + row + "' is no row of data/paper/table1_cora.csv",

@@ -16,4 +16,7 @@ SignalResult compare_signal(const SignalSpec& spec, Channels& channels, const Ca
 // that is not there, naming the signals of the test.
 double published_rating(const std::string& row, const std::string& file, int line);
 
+// All rows of that table, "test/signal" and total.
+std::vector<std::pair<std::string, double>> published_ratings();
+
 }  // namespace fabrica::study

@@ -25,6 +25,28 @@ TEST_CASE("every command runs once and its status comes back") {
   CHECK(status[7] == 127);
 }
 
+// each command ends well only if it sees all three at work within 20 s
+TEST_CASE("as many commands run side by side as there are jobs") {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("fabrica_jobs_" + std::to_string(getpid()));
+  for (const int jobs : {3, 1}) {
+    std::filesystem::create_directories(folder);
+    std::vector<Command> commands;
+    const std::string patience = jobs == 3 ? "200" : "3";
+    for (int i = 0; i < 3; ++i)
+      commands.push_back(
+          {{"sh", "-c",
+            "cd " + folder.string() + "; : > begun" + std::to_string(i) + "; for n in $(seq " +
+                patience + "); do [ $(ls | wc -l) -eq 3 ] && exit 0; sleep 0.1; done; exit 9"},
+           ""});
+    int together = 0;
+    run_all(commands, jobs, [&](std::size_t, const Ended& e) { together += e.status == 0; });
+    // one at a time the last finds the marks of the others, and only it
+    CHECK(together == (jobs == 3 ? 3 : 1));
+    std::filesystem::remove_all(folder);
+  }
+}
+
 TEST_CASE("what a command prints is in its log") {
   const std::string log =
       (std::filesystem::temp_directory_path() / ("fabrica_log_" + std::to_string(getpid())))

@@ -144,6 +144,7 @@ void compare(Work& w) {
   Channels channels(w.folder + "/result/csv", w.c.folder);
   Outcome& o = w.outcome;
   o.state = State::passed;
+  extras.readme = read_file(w.c.folder + "/readme.md");
   try {
     if (w.c.runs()) {
       read_run(w, channels, extras);
@@ -269,7 +270,7 @@ int validate(const ValidateOptions& o) {
 }
 
 int print_ratings(const ValidateOptions& o) {
-  fmt::print("{}", rating_table(stored(o.out)));
+  fmt::print("{}", rating_table(stored(o.out), published_ratings()));
   return 0;
 }
 

@@ -67,6 +67,8 @@ class Pages(unittest.TestCase):
         text = self.driver.find_element(By.TAG_NAME, "body").text
         self.assertIn("closed form: 10 sin(pi t / 50)", text)
         self.assertIn("no reference curve available", text)
+        notes = self.driver.find_element(By.TAG_NAME, "pre").text
+        self.assertIn("a <b>loop</b> is drawn & not rated", notes)
         self.assertIn("passed", text)
         self.assertIn("CORA 3.6", text)
         self.assertIn("ISO/TS 18571:2014", text)
