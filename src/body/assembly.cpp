@@ -48,7 +48,8 @@ class Assembly {
   }
 
  private:
-  static constexpr Id solid_section = 1, bone_shell_section = 2, stiff_hourglass = 1;
+  static constexpr Id solid_section = 1, bone_shell_section = 2, bending_section = 3,
+                      stiff_hourglass = 1;
   static constexpr double tie_reach = 30;  // [mm]
 
   RegionIds& ids(Region region) { return ids_[std::size_t(region)]; }
@@ -63,6 +64,9 @@ class Assembly {
   // thickness
   void sections() {
     titled("SECTION_SOLID", "bricks").set("secid", double(solid_section)).set("elform", 1);
+    titled("SECTION_SOLID", "bricks that bend, integrated in full")
+        .set("secid", double(bending_section))
+        .set("elform", -1);
     Card& shell = titled("SECTION_SHELL", "cortex under the surface of the bone");
     shell.set("secid", double(bone_shell_section))
         .set("elform", 2)
@@ -123,10 +127,12 @@ class Assembly {
       if (!part_of_layer.count(layer)) {
         const std::string row = rigid ? "small_bone" : material_of(bone, rows, layer);
         // each rigid bone is a body of its own: parts that share a rigid material stay apart
+        // costal cartilage carries bending in its bricks alone, two or three over the height
+        const bool bends = !rigid && bone.mesh.name.starts_with("costal_cartilage");
         part_of_layer[layer] =
-            part(bone.region, part_name(bone, rigid ? "whole" : tissue(bone, layer)), solid_section,
-                 materials_.use(row), rigid ? 0 : stiff_hourglass,
-                 {0, "", row, "", index, -1, 0, rigid});
+            part(bone.region, part_name(bone, rigid ? "whole" : tissue(bone, layer)),
+                 bends ? bending_section : solid_section, materials_.use(row),
+                 rigid || bends ? 0 : stiff_hourglass, {0, "", row, "", index, -1, 0, rigid});
         entry_of_[part_of_layer[layer]] = out_.parts.size() - 1;
       }
       std::array<Id, 8> corner{};
@@ -322,7 +328,7 @@ class Assembly {
   Materials materials_;
   std::vector<RegionIds> ids_;
   std::map<Id, std::size_t> entry_of_;
-  Id last_section_ = 2, last_set_ = 0, last_contact_ = 0;
+  Id last_section_ = bending_section, last_set_ = 0, last_contact_ = 0;
   AssembledBody out_;
 };
 
