@@ -47,6 +47,7 @@ body::BodyOptions options_of(const BodyCommand& c) {
 void write_file(const std::filesystem::path& path, const std::string& text) {
   std::ofstream out(path);
   out << text;
+  out.close();
   if (!out) throw BodyError(fmt::format("cannot write {}", path.string()));
 }
 
@@ -124,8 +125,10 @@ int body_command(const BodyCommand& c) {
   if (diagnostics.has_errors()) return 1;
   const std::filesystem::path deck = c.out, folder = deck.parent_path();
   if (!folder.empty()) std::filesystem::create_directories(folder);
+  // closed before the rest, so that a run may start, or the pictures fail, beside a whole deck
   std::ofstream out(deck);
   write_deck(*model, out);
+  out.close();
   if (!out) throw BodyError(fmt::format("cannot write {}", deck.string()));
   write_file(folder / (deck.stem().string() + "_landmarks.csv"),
              body::landmarks_csv(made.skeleton));
