@@ -9,6 +9,7 @@
 
 #include "body/id_rows.h"
 #include "body/materials.h"
+#include "body/mesh/shell_layer.h"
 
 namespace fabrica::body {
 namespace {
@@ -152,8 +153,9 @@ class Assembly {
     bool solid = false;
     for (const int layer : bone.mesh.brick_layer)
       solid = solid || (layer == 1 && bone.mesh.name != "skull");
+    const std::vector<double> shell = shell_thickness(bone.mesh, bone.mesh.cortex);
     for (std::size_t q = 0; q < bone.mesh.surface.size(); ++q) {
-      const double t = to_field(bone.mesh.cortex[q]);
+      const double t = to_field(shell[q]);
       if (t <= 0) continue;
       if (!pid) {
         const std::string name = bone.mesh.name.starts_with("costal_cartilage") ? "perichondrium"
