@@ -79,7 +79,7 @@ class CardReader {
         context_.report(Severity::unsupported, "bad-transformation", card.where, block_.keyword,
                         "option", problem, "Use TRANSL, ROTATE, SCALE, MIRROR and POINT");
     }
-    context_.builder.add_card(std::move(card));
+    context_.curve_units.add(context_.builder.add_card(std::move(card)), block_.placement);
   }
 
   void put(const Placement& p, Card& card) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "deck/curve_units.h"
 #include "deck/parameter.h"
 #include "deck/placement.h"
 #include "deck/reader.h"
@@ -65,6 +66,7 @@ class Context {
   const ReadOptions& options;
   ParameterTable parameters;
   std::map<std::int64_t, Affine> transformations;
+  CurveUnits curve_units;
   int keywords = 0;
 
   // Reports a problem; the 200th of the same name, keyword and field is the last that is

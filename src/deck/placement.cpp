@@ -188,11 +188,14 @@ std::string_view id_kind(const Card& card, const FieldSchema& field, int row) {
 
 void place(const Placement& placement, Card& card,
            const std::function<void(const FieldSchema&, const std::string&)>& problem) {
+  // the units of a curve follow from its use (CurveUnits)
+  const bool curve = card.schema->name == "DEFINE_CURVE";
   const auto moved = [&](const FieldSchema& f, int row, double value) {
     if (f.type == FieldType::text || value == 0) return value;
     const std::string_view kind = id_kind(card, f, row);
     if (!kind.empty()) return value + (value < 0 ? -1.0 : 1.0) * double(placement.offset(kind));
-    if (f.type == FieldType::integer || !placement.factors() || is_geometry(card, f)) return value;
+    if (f.type == FieldType::integer || !placement.factors() || curve || is_geometry(card, f))
+      return value;
     if (const auto scale = placement.factor(f.unit)) return value * *scale;
     problem(f, f.unit.empty() ? "its unit is not known" : "unit " + f.unit + " is not understood");
     return value;

@@ -62,6 +62,7 @@ class DeckReader {
   }
 
   void finish() {
+    context_.curve_units.convert(context_);
     context_.summarise_rest();
     if (!context_.options.expect_complete) return;
     if (context_.keywords == 0)

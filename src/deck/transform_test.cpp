@@ -110,6 +110,72 @@ body.k
   CHECK(model->initial_velocities[0].velocity.x == doctest::Approx(3.0));
 }
 
+// m, s, N, Pa to mm, ms, kN, GPa: a force is 1e-3, a stress 1e-9, a rate 1e-3 of what it was
+TEST_CASE("include transform: a curve takes the units of the field that names it") {
+  const std::string part = body.substr(0, body.rfind("*END")) + R"(*LOAD_NODE_SET
+         7         1         5       2.0
+         7         5         6
+*DEFINE_CURVE
+         5         0       0.0       3.0       0.5      10.0
+                 1.0               100.0
+                 2.0               200.0
+*DEFINE_CURVE
+         6
+                 0.0               100.0
+                 1.0               200.0
+*MAT_PIECEWISE_LINEAR_PLASTICITY
+         2    7850.0    2.1e11       0.3     2.0e8
+                             8         9
+*DEFINE_CURVE
+         8
+                 0.0               2.0e8
+                 0.5               4.0e8
+*DEFINE_CURVE
+         9
+                 0.0                 1.0
+               100.0                 2.0
+*END
+)";
+  const std::string include =
+      "*INCLUDE_TRANSFORM\nbody.k\n\n\n       1.0    1000.0    1000.0\n\n*END\n";
+  const Folder folder({{"body.k", part}, {"main.k", head + include}});
+  Diagnostics d;
+  const auto model = read_deck(folder.path / "main.k", d);
+  REQUIRE_MESSAGE(!d.has_errors(), all_of(d));
+  const auto at = [&](std::int64_t id, double x) {
+    return model->curves[std::size_t(model->curve_index(id))].at(x);
+  };
+  CHECK(at(5, 1500) == doctest::Approx(0.33));  // (1 + 0.5) s, 3 (100 + 10) N
+  CHECK(at(5, 2500) == doctest::Approx(0.63));
+  CHECK(at(6, 500) == doctest::Approx(150));  // N m = J, kN mm = J
+  CHECK(at(8, 0.25) == doctest::Approx(0.3));
+  CHECK(at(9, 0.05) == doctest::Approx(1.5));
+}
+
+TEST_CASE("include transform: a curve whose units are not known is an error that says why") {
+  const std::string curve =
+      "*DEFINE_CURVE\n         5\n                 0.0               100.0\n"
+      "                 1.0               200.0\n";
+  struct Case {
+    std::string users, reason;
+  };
+  const Case cases[] = {
+      {"", "no keyword that says its units uses it"},
+      {"*LOAD_NODE_SET\n         7         1         5\n         7         5         5\n",
+       "*LOAD_NODE_SET, field lcid wants other units than its other users"},
+      {"*MAT_SPRING_NONLINEAR_ELASTIC\n         2         5\n",
+       "do not follow from *MAT_SPRING_NONLINEAR_ELASTIC, field lcd"}};
+  for (const Case& c : cases) {
+    const Folder folder({{"body.k", body.substr(0, body.rfind("*END")) + c.users + curve},
+                         {"main.k", head + "*INCLUDE_TRANSFORM\nbody.k\n\n\n"
+                                           "       1.0    1000.0    1000.0\n\n*END\n"}});
+    Diagnostics d;
+    read_deck(folder.path / "main.k", d);
+    CHECK_MESSAGE(count_of(d, Severity::error, "unit-not-converted") == 1, all_of(d));
+    CHECK_MESSAGE(all_of(d).find(c.reason) != std::string::npos, all_of(d));
+  }
+}
+
 // planes, walls and boxes are points and directions too
 TEST_CASE("include transform: planes of sections, walls and boxes move with what they cut") {
   const std::string part = body.substr(0, body.rfind("*END")) + R"(*DATABASE_CROSS_SECTION_PLANE_ID
