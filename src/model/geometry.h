@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "base/tensor.h"
 
@@ -44,6 +45,27 @@ inline double brick_volume(const Vec3d x[8]) {
                   triple_product(b, c, d));
   }
   return six / 6;
+}
+
+// Smallest det(dx/dxi) of a brick over the points of the 2 x 2 x 2 rule: at most 0 where the map is
+// folded there.
+inline double smallest_jacobian(const Vec3d x[8]) {
+  constexpr int s[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
+                           {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
+  const double gauss = 1 / std::sqrt(3.0);
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const auto& point : s) {
+    Vec3d edge[3] = {};
+    for (int a = 0; a < 8; ++a)
+      for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        edge[i] += (0.125 * s[a][i] * (1 + gauss * point[j] * s[a][j]) *
+                    (1 + gauss * point[k] * s[a][k])) *
+                   (x[a] - x[0]);
+      }
+    smallest = std::min(smallest, triple_product(edge[0], edge[1], edge[2]));
+  }
+  return smallest;
 }
 
 // area of a quadrilateral, or of a triangle that repeats its third node

@@ -24,6 +24,19 @@ double solid_volume(const Model& model, int e) {
   return brick_volume(corners);
 }
 
+// whether a deformable brick of eight points is folded at one of them
+bool is_folded(const Model& model, int e) {
+  const auto& n = model.solids.node[e];
+  const int p = model.solids.part[e];
+  std::array<int, 8> c{};
+  if (p < 0 || model.parts[p].rigid || model.parts[p].section < 0 || n[8] >= 0) return false;
+  const int formulation = model.sections[model.parts[p].section].formulation;
+  if ((formulation != 2 && formulation >= 0) || distinct_corners(n, c) != 8) return false;
+  Vec3d x[8];
+  for (int k = 0; k < 8; ++k) x[k] = model.nodes.x[n[k]];
+  return !(smallest_jacobian(x) > 0);
+}
+
 int root(std::vector<int>& parent, int i) {
   while (parent[i] != i) i = parent[i] = parent[parent[i]];
   return i;
@@ -50,6 +63,11 @@ void Resolver::check_mesh() {
     else if (!(v > 0))
       report("degenerate-element", staging.solid_where[e], "ELEMENT_SOLID", model_.solids.id[e],
              "has no volume");
+    else if (is_folded(model_, e) && may_report("negative-jacobian"))
+      diagnostics_.error("negative-jacobian", staging.solid_where[e], "ELEMENT_SOLID", "eid",
+                         "element " + std::to_string(model_.solids.id[e]) +
+                             " is folded: its Jacobian is negative at an integration point",
+                         "Correct its shape, or use ELFORM 1, which has one point");
   }
   for (int e = 0; e < model_.shells.size(); ++e) {
     const auto& n = model_.shells.node[e];

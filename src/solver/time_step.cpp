@@ -56,8 +56,11 @@ void Simulation::choose_time_step() {
   // a model without deformable elements takes what resolves its motion
   if (step >= 1e29) step = end_time_ / 1000;
   if (state_.cycle == 0) initial_step_ = step;
-  if (!(step > 0) || !std::isfinite(step))
-    return end(Ending::not_a_number, "the time step is not a number");
+  if (!(step > 0) || !std::isfinite(step)) {
+    check_health();  // names the element
+    if (ending_ == Ending::running) end(Ending::not_a_number, "the time step is not a number");
+    return;
+  }
   const double limit = model_.controls.minimum_time_step_factor * initial_step_;
   if (step < limit) {
     const TimeStepOwner o = time_step_owner();
