@@ -23,15 +23,12 @@ bool is_two_way(ContactKind k) {
   return k == ContactKind::automatic_surface_to_surface || k == ContactKind::surface_to_surface;
 }
 
-// options that are read but act differently here
-void check_options(const Contact& c, Diagnostics& diagnostics) {
-  auto warn = [&](const char* name, const char* field, const std::string& message) {
-    diagnostics.warning(name, c.where, "CONTACT", field,
-                        "contact " + std::to_string(c.id) + ": " + message);
-  };
-  if (c.fs == -2)
-    warn("contact-friction-table", "fs",
-         "friction of *DEFINE_FRICTION (FS=-2) is not used: no friction");
+void check_friction(const Model& model, const Contact& c, Diagnostics& diagnostics) {
+  if (c.fs == -2 && !ContactFriction::table(model, c))
+    diagnostics.error("missing-friction-table", c.where, "CONTACT", "fd",
+                      "contact " + std::to_string(c.id) +
+                          ": FS = -2 asks for a *DEFINE_FRICTION, but FD names none",
+                      "Define it, and name it by FD where there are several");
 }
 
 // old kinds: shells given by parts turn to the other side, those of sets only where ORIEN asks
@@ -89,7 +86,7 @@ Contacts::Contacts(const Model& model, State& state, const ContactInput& input,
 void Contacts::add_contact(const Model& model, int index, const SurfaceSource& source,
                            Diagnostics& diagnostics) {
   const Contact& contact = model.contacts[index];
-  check_options(contact, diagnostics);
+  check_friction(model, contact, diagnostics);
   auto add = [&](ContactSurface tracked, ContactSurface reference, bool second) {
     passes_.push_back(std::make_unique<ContactPass>(model, contact, index, std::move(tracked),
                                                     std::move(reference), carriers_));

@@ -42,6 +42,23 @@ std::vector<Vec3d> forces_after(Rig& rig, const std::vector<int>& moved, const V
   return f;
 }
 
+// F_t / F_n of the upper plate while it slides and sinks in
+double friction_when_sliding(Plates& rig) {
+  rig.start(0.01);
+  REQUIRE(!rig.diagnostics.has_errors());
+  Team team(1);
+  for (int n : rig.upper) rig.state.nodes[n].v = {1, 0, -0.1};
+  rig.step(team, 0.01, {});
+  rig.contacts->forces(rig.model, rig.state, team);
+  for (std::size_t i = 0; i < rig.state.nodes.size(); ++i) rig.state.interaction.take(i);
+  for (int n : rig.upper) rig.state.nodes[n].x += Vec3d{0.01, 0, -0.001};
+  rig.contacts->forces(rig.model, rig.state, team);
+  Vec3d f{0, 0, 0};
+  for (int n : rig.upper) f += rig.state.interaction.take(n);
+  CHECK(f.z > 0);
+  return -f.x / f.z;
+}
+
 }  // namespace
 
 // Old kinds hold what comes from the side the normal points to, however far behind the surface it
@@ -134,18 +151,41 @@ TEST_CASE("FS=-1 takes the mean of the friction of the two parts") {
     rig.contact().fs = -1, rig.contact().soft = soft;
     rig.model.parts[0].contact = PartContact{0.1, 0.1};
     rig.model.parts[1].contact = PartContact{0.5, 0.5};
+    CHECK(friction_when_sliding(rig) == doctest::Approx(0.3).epsilon(1e-6));
+  }
+}
+
+// the pair's own coefficient, in either order; the table's default for other pairs; FSF scales both
+TEST_CASE("FS=-2 takes the friction of the pair of parts from *DEFINE_FRICTION") {
+  struct Case {
+    double part_i, part_j, scale, expected;
+  };
+  for (int soft : {1, 2})
+    for (const Case& c : {Case{1, 2, 1, 0.4}, {2, 1, 1, 0.4}, {1, 1, 1, 0.15}, {1, 2, 0.5, 0.2}}) {
+      Plates rig(ContactKind::automatic_surface_to_surface, 0.2);
+      rig.contact().fs = -2, rig.contact().fsf = c.scale, rig.contact().soft = soft;
+      for (const double id : {7, 8}) {
+        auto card = std::make_unique<Card>("DEFINE_FRICTION");
+        card->set("id", id).set("fs_d", id == 7 ? 0.15 : 0.7);
+        card->add_row({c.part_i, c.part_j, id == 7 ? 0.4 : 0.9});
+        rig.model.cards.push_back(std::move(card));
+      }
+      rig.contact().fd = 7;
+      CHECK(friction_when_sliding(rig) == doctest::Approx(c.expected).epsilon(1e-6));
+    }
+}
+
+TEST_CASE("FS=-2 without its table is an error") {
+  for (const int tables : {0, 2}) {  // two, and FD does not say which
+    Plates rig(ContactKind::automatic_surface_to_surface, 0.2);
+    rig.contact().fs = -2;
+    for (int i = 0; i < tables; ++i) {
+      rig.model.cards.push_back(std::make_unique<Card>("DEFINE_FRICTION"));
+      rig.model.cards.back()->set("id", 7 + i);
+    }
     rig.start(0.01);
-    Team team(1);
-    for (int n : rig.upper) rig.state.nodes[n].v = {1, 0, -0.1};
-    rig.step(team, 0.01, {});
-    rig.contacts->forces(rig.model, rig.state, team);
-    for (std::size_t i = 0; i < rig.state.nodes.size(); ++i) rig.state.interaction.take(i);
-    for (int n : rig.upper) rig.state.nodes[n].x += Vec3d{0.01, 0, -0.001};
-    rig.contacts->forces(rig.model, rig.state, team);
-    Vec3d f{0, 0, 0};
-    for (int n : rig.upper) f += rig.state.interaction.take(n);
-    CHECK(f.z > 0);
-    CHECK(-f.x / f.z == doctest::Approx(0.3).epsilon(1e-6));
+    REQUIRE(rig.diagnostics.has_errors());
+    CHECK(rig.diagnostics.list()[0].name == "missing-friction-table");
   }
 }
 
