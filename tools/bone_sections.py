@@ -13,7 +13,8 @@ no axial force and no moment about z. Sums over bricks and shells with the laws 
 s is the slow curve of the law (yield, tangent modulus), times 1 + (rate / C)^(1/P) in the cortex with --rate. Shells are
 taken twice: `run` as elements integrate them (area of the reference surface times thickness, layers inward from it),
 `bone` with the area that a layer has, narrower the deeper it lies on a curved surface. What is left out: shear, curvature
-of the axis, ovalling. So this is what mesh and materials say without the solver.
+of the axis, ovalling. `bone` takes the thickness of a shell for the depth of its layer. So this is what mesh and materials
+say without the solver.
 """
 import argparse
 
