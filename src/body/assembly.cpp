@@ -127,9 +127,9 @@ class Assembly {
       const int layer = rigid ? 0 : bone.mesh.brick_layer[e];
       if (!part_of_layer.count(layer)) {
         const std::string row = rigid ? "small_bone" : material_of(bone, rows, layer);
-        // each rigid bone is a body of its own: parts that share a rigid material stay apart
         // costal cartilage carries bending in its bricks alone, two or three over the height
         const bool bends = !rigid && bone.mesh.name.starts_with("costal_cartilage");
+        // each rigid bone is a body of its own: parts that share a rigid material stay apart
         part_of_layer[layer] =
             part(bone.region, part_name(bone, rigid ? "whole" : tissue(bone, layer)),
                  bends ? bending_section : solid_section, materials_.use(row),
