@@ -13,6 +13,7 @@
 #include "body/assembly.h"
 #include "body/body.h"
 #include "body/goals.h"
+#include "body/joint_gaps.h"
 #include "body/landmarks.h"
 #include "body/measures.h"
 #include "body/mount.h"
@@ -88,6 +89,7 @@ struct Trial {
     body::AssemblyOptions options;
     options.end_time = rig ? rig->end_time : body::trial_time(name);
     options.fracture = fracture;
+    if (!rig && name != "none") options.states_every = options.end_time / 50;  // for its joints
     if (rig) options.output_every = rig->output_every, options.states_every = rig->states_every;
     return options;
   }
@@ -132,6 +134,9 @@ int body_command(const BodyCommand& c) {
   if (!out) throw BodyError(fmt::format("cannot write {}", deck.string()));
   write_file(folder / (deck.stem().string() + "_landmarks.csv"),
              body::landmarks_csv(made.skeleton));
+  if (!made.between.pieces.empty())
+    write_file(folder / (deck.stem().string() + "_joints.csv"),
+               body::joints_csv(body::joint_rows(made, assembled)));
   const CheckReport check = check_model(*model, diagnostics);
   const body::OutsideMeasures outside = search_contacts(*model, seconds, diagnostics);
   write_file(folder / (deck.stem().string() + "_measures.md"),

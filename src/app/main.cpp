@@ -5,6 +5,7 @@
 #include "app/bench.h"
 #include "app/body.h"
 #include "app/injury.h"
+#include "app/joints.h"
 #include "app/run.h"
 #include "app/show.h"
 #include "app/signals.h"
@@ -59,6 +60,8 @@ int main(int argc, char** argv) {
   fabrica::SignalCommands signals;
   fabrica::add_signals(app, signals);
   fabrica::add_study(app, study);
+  fabrica::JointsCommand joints;
+  fabrica::add_joints(app, joints);
   fabrica::InjuryCommand injury;
   fabrica::add_injury(app, injury);
   try {
