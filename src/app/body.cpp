@@ -80,7 +80,7 @@ struct Trial {
     if (name.ends_with(".toml")) rig = body::read_rig(name);
   }
   body::Body build(body::BodyOptions options) const {
-    if (rig) options.only = rig->bones(), options.joints = false;
+    if (rig) options.only = rig->bones(), options.joints = rig->joined();
     body::Body made = body::build_body(options);
     if (rig) body::place_specimens(*rig, made);
     return made;
@@ -95,9 +95,9 @@ struct Trial {
   }
   void surround(const body::Body& made, body::AssembledBody& assembled, Builder& builder) const {
     if (!rig) return body::surround(name, made, assembled, builder);
-    for (const body::MountedPot& pot : body::mount(*rig, made, assembled, builder))
-      fmt::print("pot {}: {}, pivot at {:.2f} {:.2f} {:.2f} mm\n", pot.id, pot.name, pot.pivot.x,
-                 pot.pivot.y, pot.pivot.z);
+    for (const body::MountedPart& part : body::mount(*rig, made, assembled, builder))
+      fmt::print("rig part {}: {}, pivot at {:.2f} {:.2f} {:.2f} mm\n", part.id, part.name,
+                 part.pivot.x, part.pivot.y, part.pivot.z);
   }
 
   std::string name;

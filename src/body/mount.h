@@ -1,6 +1,6 @@
 #pragma once
-// Bones in a test rig: specimens laid into its axes, pots as rigid bodies with their supports and
-// motions, the force on each pot.
+// Bones in a test rig: specimens laid into its axes, pots and fixtures as rigid bodies with their
+// supports, motions and loads, the force on each.
 #include <vector>
 
 #include "body/assembly.h"
@@ -16,15 +16,16 @@ std::vector<int> potted_nodes(const RigPot& pot, const PlacedBone& bone);
 // a specimen was not made or its pots overlap.
 void place_specimens(const Rig& rig, Body& body);
 
-// What a pot became, in the order of the file: its number is that of its rigid body (rbdout) and of
-// the section through the bone beside it (secforc: force of the bone on the pot).
-struct MountedPot {
+// What a pot or a fixture became, in the order of the file, pots first: its number is that of its
+// rigid body (rbdout), of a pot that of the section through the bone beside it (secforc: force of
+// the bone on the pot), of a fixture that of its contact (rcforc).
+struct MountedPart {
   std::int64_t id = 0;
-  std::string name;  // "right.rib5 posterior"
+  std::string name;  // "right.rib5 posterior", "impactor"
   Point pivot{0, 0, 0};
 };
-// Adds pots, supports, motions and output to the model of an assembled body.
-std::vector<MountedPot> mount(const Rig& rig, const Body& body, AssembledBody& assembled,
-                              Builder& builder);
+// Adds pots, fixtures, supports, motions, loads and output to the model of an assembled body.
+std::vector<MountedPart> mount(const Rig& rig, const Body& body, AssembledBody& assembled,
+                               Builder& builder);
 
 }  // namespace fabrica::body

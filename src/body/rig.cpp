@@ -1,112 +1,12 @@
 #include "body/rig.h"
 
-#include <fmt/format.h>
-#include <toml++/toml.h>
-
-#include <algorithm>
-
 #include "body/mesh/bone_mesh.h"
+#include "body/rig_table.h"
 
 namespace fabrica::body {
 namespace {
 
 constexpr std::array<const char*, 6> dof_names{"x", "y", "z", "rx", "ry", "rz"};
-
-// A table whose keys are asked for by name and type; `finish` refuses those that nobody asked for.
-class RigTable {
- public:
-  RigTable(const std::string& path, const toml::table& table, std::string prefix)
-      : path_(path), table_(table), prefix_(std::move(prefix)) {}
-
-  [[noreturn]] void fail(const std::string& key, const std::string& message) const {
-    const toml::node* node = table_.get(key);
-    const auto line = (node ? *node : static_cast<const toml::node&>(table_)).source().begin.line;
-    throw BodyError(fmt::format("{}:{}: {}{} {}", path_, line, prefix_, key, message));
-  }
-  const toml::node* find(const std::string& key) {
-    asked_.push_back(key);
-    return table_.get(key);
-  }
-  const toml::node& need(const std::string& key, const std::string& what) {
-    const toml::node* node = find(key);
-    if (!node) fail(key, "is missing; give " + what);
-    return *node;
-  }
-  double number(const std::string& key, double otherwise) {
-    const toml::node* node = find(key);
-    if (!node) return otherwise;
-    const auto value = node->value<double>();
-    if (!value) fail(key, "must be a number");
-    return *value;
-  }
-  double positive(const std::string& key, const std::string& what) {
-    need(key, what);
-    const double value = number(key, 0);
-    if (!(value > 0)) fail(key, fmt::format("is {:g}, which is not above 0; give {}", value, what));
-    return value;
-  }
-  std::string text(const std::string& key, const std::string& what) {
-    const auto value = need(key, what).value<std::string>();
-    if (!value) fail(key, "must be a text; give " + what);
-    return *value;
-  }
-  std::vector<std::string> texts(const std::string& key, const std::string& what) {
-    std::vector<std::string> out;
-    const toml::node& node = need(key, what);
-    if (!node.is_array()) fail(key, "must be a list; give " + what);
-    for (const toml::node& item : *node.as_array()) {
-      const auto value = item.value<std::string>();
-      if (!value) fail(key, "must be a list of texts; give " + what);
-      out.push_back(*value);
-    }
-    return out;
-  }
-  std::optional<Point> point(const std::string& key) {
-    const toml::node* node = find(key);
-    if (!node) return {};
-    const auto values = numbers(key, *node);
-    if (values.size() != 3) fail(key, "must be three numbers such as [0, 0, 1]");
-    return Point{values[0], values[1], values[2]};
-  }
-  std::vector<double> numbers(const std::string& key, const toml::node& node) const {
-    std::vector<double> out;
-    if (!node.is_array()) fail(key, "must be a list of numbers");
-    for (const toml::node& item : *node.as_array()) {
-      const auto value = item.value<double>();
-      if (!value) fail(key, "must be a list of numbers");
-      out.push_back(*value);
-    }
-    return out;
-  }
-  std::vector<RigTable> tables(const std::string& key) {
-    std::vector<RigTable> out;
-    const toml::node* node = find(key);
-    if (!node) return out;
-    if (!node->is_array_of_tables()) fail(key, fmt::format("is written as [[{}]]", key));
-    for (const toml::node& item : *node->as_array())
-      out.emplace_back(path_, *item.as_table(), fmt::format("{}[{}].", key, out.size() + 1));
-    return out;
-  }
-  std::optional<RigTable> table(const std::string& key) {
-    const toml::node* node = find(key);
-    if (!node) return {};
-    if (!node->is_table()) fail(key, "must be a table such as { along = \"x\", ... }");
-    return RigTable(path_, *node->as_table(), prefix_ + key + ".");
-  }
-  void finish() const {
-    for (const auto& [key, node] : table_) {
-      if (std::find(asked_.begin(), asked_.end(), std::string(key.str())) != asked_.end()) continue;
-      fail(std::string(key.str()),
-           fmt::format("is no key here; there are {}", fmt::join(asked_, ", ")));
-    }
-  }
-
- private:
-  const std::string& path_;
-  const toml::table& table_;
-  std::string prefix_;
-  std::vector<std::string> asked_;
-};
 
 BoneName bone_name(RigTable& table, const std::string& key, const std::string& text) {
   BoneName name{text, Side::midline, text};
@@ -128,68 +28,178 @@ int dof_named(RigTable& table, const std::string& key, const std::string& text) 
                               fmt::join(dof_names, ", ")));
 }
 
-RigMotion read_motion(RigTable table) {
-  RigMotion motion;
-  motion.dof = dof_named(table, "along", table.text("along", "x, y, z, rx, ry or rz"));
-  const toml::node* velocity = table.find("velocity");
-  const toml::node* displacement = table.find("displacement");
-  if (!velocity == !displacement)
-    table.fail(velocity ? "velocity" : "along", "wants either velocity or displacement");
-  motion.velocity = velocity;
-  const std::string key = velocity ? "velocity" : "displacement";
-  const toml::node& points = velocity ? *velocity : *displacement;
+std::vector<BoneName> bones_of(RigTable& table, const std::string& key, const std::string& what) {
+  std::vector<BoneName> names;
+  for (const std::string& text : table.texts(key, what))
+    names.push_back(bone_name(table, key, text));
+  return names;
+}
+
+// [[first, value], ...] with first rising
+std::vector<std::pair<double, double>> read_points(const RigTable& table, const std::string& key,
+                                                   const toml::node& points, const char* pairs,
+                                                   const char* falls) {
+  std::vector<std::pair<double, double>> out;
   if (!points.is_array() || points.as_array()->size() < 2)
-    table.fail(key, "must be a list of two or more [time, value]");
+    table.fail(key, fmt::format("must be a list of two or more {}", pairs));
   for (const toml::node& item : *points.as_array()) {
     const auto pair = table.numbers(key, item);
-    if (pair.size() != 2) table.fail(key, "must be a list of [time, value]");
-    if (!motion.points.empty() && pair[0] <= motion.points.back().first)
-      table.fail(key, fmt::format("goes back in time at {:g} ms; sort it by time", pair[0]));
-    motion.points.emplace_back(pair[0], pair[1]);
+    if (pair.size() != 2) table.fail(key, fmt::format("must be a list of {}", pairs));
+    if (!out.empty() && pair[0] <= out.back().first)
+      table.fail(key, fmt::format("{} at {:g}; sort it", falls, pair[0]));
+    out.emplace_back(pair[0], pair[1]);
   }
+  return out;
+}
+
+// one of the kinds that are allowed here, by the key that gives it
+RigCurve read_curve(RigTable table,
+                    const std::vector<std::pair<const char*, RigCurve::Kind>>& kinds) {
+  RigCurve curve;
+  curve.dof = dof_named(table, "along", table.text("along", "x, y, z, rx, ry or rz"));
+  std::vector<std::string> names, given;
+  for (const auto& [name, kind] : kinds) {
+    names.push_back(name);
+    const toml::node* points = table.find(name);
+    if (!points) continue;
+    given.push_back(name);
+    curve.kind = kind;
+    curve.points = read_points(table, name, *points, "[time, value]", "goes back in time");
+  }
+  if (given.size() != 1)
+    table.fail(given.empty() ? "along" : given.back(),
+               fmt::format("wants {}", fmt::join(names, " or ")));
   table.finish();
-  return motion;
+  return curve;
+}
+
+RigSupport read_support(RigTable& table) {
+  RigSupport support;
+  if (table.find("free"))
+    for (const std::string& text : table.texts("free", "degrees of freedom"))
+      support.free[std::size_t(dof_named(table, "free", text))] = true;
+  if (auto motion = table.table("motion"))
+    support.motion = read_curve(
+        *motion, {{"velocity", RigCurve::velocity}, {"displacement", RigCurve::displacement}});
+  if (support.motion && support.free[std::size_t(support.motion->dof)])
+    table.fail("free", fmt::format("holds {}, which the motion moves; take it out",
+                                   dof_names[std::size_t(support.motion->dof)]));
+  for (RigTable& load : table.tables("load")) {
+    support.loads.push_back(read_curve(load, {{"force", RigCurve::force}}));
+    const int dof = support.loads.back().dof;
+    if (support.motion && support.motion->dof == dof)
+      table.fail("load", fmt::format("pushes along {}, which the motion moves; take one out",
+                                     dof_names[std::size_t(dof)]));
+  }
+  if (const auto velocity = table.point("start_velocity")) support.velocity = *velocity;
+  const double start[3] = {support.velocity.x, support.velocity.y, support.velocity.z};
+  for (std::size_t d = 0; d < 3; ++d)
+    if (start[d] != 0 && support.holds(d))
+      table.fail("start_velocity",
+                 fmt::format("goes along {}, which is held; add it to free", dof_names[d]));
+  return support;
+}
+
+Point direction(RigTable& table, const std::string& key, const Point& value) {
+  if (norm(value) == 0) table.fail(key, "must be a direction such as [0, 0, 1]");
+  return (1 / norm(value)) * value;
 }
 
 RigPot read_pot(RigTable table) {
   RigPot pot;
   pot.name = table.text("name", "the name of the pot");
-  for (const std::string& text : table.texts("bones", "the bones that get it"))
-    pot.bones.push_back(bone_name(table, "bones", text));
+  pot.bones = bones_of(table, "bones", "the bones that get it");
   const auto toward = table.point("toward");
   if (!toward || norm(*toward) == 0)
     table.fail("toward", "must be a direction of the bone's frame such as [0, 0, 1]");
-  pot.toward = (1 / norm(*toward)) * *toward;
+  pot.toward = direction(table, "toward", *toward);
   pot.depth = table.positive("depth", "the depth of the pot in mm");
-  if (table.find("free"))
-    for (const std::string& text : table.texts("free", "degrees of freedom"))
-      pot.free[std::size_t(dof_named(table, "free", text))] = true;
-  if (auto motion = table.table("motion")) pot.motion = read_motion(*motion);
-  if (pot.motion && pot.free[std::size_t(pot.motion->dof)])
-    table.fail("free", fmt::format("holds {}, which the motion moves; take it out",
-                                   dof_names[std::size_t(pot.motion->dof)]));
+  if (table.find("pivot")) pot.pivot = table.positive("pivot", "its distance from the open face");
+  if (pot.pivot && *pot.pivot > pot.depth)
+    table.fail("pivot", fmt::format("is {:g} mm behind the open face, but the pot is {:g} mm deep",
+                                    *pot.pivot, pot.depth));
+  pot.mass = table.number("mass", 0);
+  if (pot.mass < 0) table.fail("mass", "is below 0; give that of the cup in kg");
+  pot.support = read_support(table);
   table.finish();
   return pot;
+}
+
+RigFixture::Pad read_pad(RigTable table) {
+  RigFixture::Pad pad;
+  pad.thickness = table.positive("thickness", "that of the layer in mm");
+  pad.density = table.positive("density", "that of the foam in kg/mm3");
+  pad.modulus = table.positive("modulus", "that of the foam in tension in GPa");
+  pad.compression = read_points(
+      table, "compression", table.need("compression", "a list of [nominal strain, stress in GPa]"),
+      "[strain, stress]", "has falling strains");
+  table.finish();
+  return pad;
+}
+
+RigFixture read_fixture(RigTable table) {
+  RigFixture fixture;
+  fixture.name = table.text("name", "the name of the fixture");
+  const std::string shape = table.text("shape", "ball, cylinder or box");
+  if (shape != "ball" && shape != "cylinder" && shape != "box")
+    table.fail("shape", fmt::format("'{}' is unknown; there are ball, cylinder, box", shape));
+  fixture.shape = shape == "ball"       ? RigFixture::ball
+                  : shape == "cylinder" ? RigFixture::cylinder
+                                        : RigFixture::box;
+  if (fixture.shape != RigFixture::box) fixture.radius = table.positive("radius", "that in mm");
+  if (fixture.shape == RigFixture::cylinder)
+    fixture.length = table.positive("length", "that in mm");
+  if (fixture.shape == RigFixture::box) {
+    const auto size = table.point("size");
+    if (!size || !(size->x > 0) || !(size->y > 0) || !(size->z > 0))
+      table.fail("size", "must be three lengths in mm: along axis, across, along toward");
+    fixture.size = *size;
+  }
+  if (fixture.shape != RigFixture::ball)
+    if (const auto axis = table.point("axis")) fixture.axis = direction(table, "axis", *axis);
+  if (const auto at = table.point("at")) fixture.at = *at;
+  if (const auto toward = table.point("toward"))
+    fixture.toward = direction(table, "toward", *toward);
+  if (fixture.shape != RigFixture::ball && std::abs(dot(fixture.axis, fixture.toward)) > 1e-6)
+    table.fail("axis", "must be square to toward");
+  fixture.gap = table.number("gap", fixture.gap);
+  if (fixture.gap < 0) table.fail("gap", "is below 0, within the bone");
+  fixture.element = table.number("element", fixture.element);
+  if (!(fixture.element > 0)) table.fail("element", "is not above 0; give the edge in mm");
+  fixture.mass = table.positive("mass", "that in kg");
+  fixture.friction = table.number("friction", fixture.friction);
+  fixture.touches = bones_of(table, "touches", "the bones that it touches");
+  if (auto pad = table.table("pad")) fixture.pad = read_pad(*pad);
+  if (fixture.pad && fixture.shape != RigFixture::box)
+    table.fail("pad", "lies on a box; a ball or a cylinder has none");
+  fixture.support = read_support(table);
+  table.finish();
+  return fixture;
 }
 
 RigSpecimen read_specimen(RigTable table, const std::vector<RigPot>& pots) {
   RigSpecimen specimen;
   specimen.bone = bone_name(table, "bone", table.text("bone", "a bone such as right.rib5"));
-  const auto along = table.texts("along", "the pots on its x axis, [from, to]");
-  if (along.size() != 2) table.fail("along", "must be two pots: [from, to]");
-  specimen.from = along[0], specimen.to = along[1];
-  for (const std::string& name : along) {
-    const bool found = std::any_of(pots.begin(), pots.end(), [&](const RigPot& pot) {
-      return pot.name == name && std::any_of(pot.bones.begin(), pot.bones.end(), [&](auto& bone) {
-               return bone.text == specimen.bone.text;
-             });
-    });
-    if (!found)
-      table.fail("along", fmt::format("'{}' is no pot of {}; add a [[pot]] of that name with it",
-                                      name, specimen.bone.text));
+  if (table.find("with")) specimen.with = bones_of(table, "with", "the bones joined to it");
+  if (table.find("along")) {
+    const auto along = table.texts("along", "the pots on its x axis, [from, to]");
+    if (along.size() != 2) table.fail("along", "must be two pots: [from, to]");
+    specimen.from = along[0], specimen.to = along[1];
+    const std::vector<BoneName> bones = specimen.bones();
+    for (const std::string& name : along) {
+      const bool found = std::any_of(pots.begin(), pots.end(), [&](const RigPot& pot) {
+        return pot.name == name && std::any_of(bones.begin(), bones.end(),
+                                               [&](auto& bone) { return holds(pot, bone); });
+      });
+      if (!found)
+        table.fail("along", fmt::format("'{}' is no pot of {}; add a [[pot]] of that name with it",
+                                        name, specimen.bone.text));
+    }
   }
   if (const auto at = table.point("at")) specimen.at = *at;
   specimen.up = table.point("up");
+  if (specimen.up && specimen.from.empty())
+    table.fail("up", "turns a specimen about the line of its pots; give along, or take it out");
   table.finish();
   return specimen;
 }
@@ -200,17 +210,49 @@ bool same(const BoneName& name, const PlacedBone& bone) {
 
 }  // namespace
 
+bool RigSupport::holds(std::size_t dof) const {
+  const auto moves = [&](const RigCurve& curve) { return std::size_t(curve.dof) == dof; };
+  return !free[dof] && !(motion && moves(*motion)) &&
+         std::none_of(loads.begin(), loads.end(), moves);
+}
+
+std::vector<BoneName> RigSpecimen::bones() const {
+  std::vector<BoneName> out{bone};
+  out.insert(out.end(), with.begin(), with.end());
+  return out;
+}
+
+bool holds(const RigPot& pot, const BoneName& bone) {
+  return std::any_of(pot.bones.begin(), pot.bones.end(),
+                     [&](const BoneName& b) { return b.text == bone.text; });
+}
+
+bool Rig::joined() const {
+  return std::any_of(specimens.begin(), specimens.end(),
+                     [](const RigSpecimen& specimen) { return !specimen.with.empty(); });
+}
+
 std::vector<std::string> Rig::bones() const {
   std::vector<std::string> names;
   for (const RigSpecimen& specimen : specimens)
-    if (std::find(names.begin(), names.end(), specimen.bone.bone) == names.end())
-      names.push_back(specimen.bone.bone);
+    for (const BoneName& bone : specimen.bones())
+      if (std::find(names.begin(), names.end(), bone.bone) == names.end())
+        names.push_back(bone.bone);
   return names;
 }
 
 bool Rig::tests(const PlacedBone& bone) const {
-  return std::any_of(specimens.begin(), specimens.end(),
-                     [&](const RigSpecimen& specimen) { return same(specimen.bone, bone); });
+  for (const RigSpecimen& specimen : specimens)
+    for (const BoneName& name : specimen.bones())
+      if (same(name, bone)) return true;
+  return false;
+}
+
+bool Rig::has(const BoneName& name) const {
+  for (const RigSpecimen& specimen : specimens)
+    for (const BoneName& bone : specimen.bones())
+      if (bone.text == name.text) return true;
+  return false;
 }
 
 Rig read_rig(const std::string& path) {
@@ -226,12 +268,20 @@ Rig read_rig(const std::string& path) {
     for (const RigTable& specimen : table.tables("specimen"))
       rig.specimens.push_back(read_specimen(specimen, rig.pots));
     if (rig.specimens.empty()) table.fail("specimen", "is missing; give a [[specimen]]");
-    for (const RigPot& pot : rig.pots)
-      for (const BoneName& bone : pot.bones)
-        if (std::none_of(rig.specimens.begin(), rig.specimens.end(),
-                         [&](auto& s) { return s.bone.text == bone.text; }))
-          table.fail("pot", fmt::format("'{}' holds {}, which is no [[specimen]]; add it", pot.name,
-                                        bone.text));
+    if (rig.joined() && rig.specimens.size() > 1)
+      table.fail("specimen", "is one where bones are joined; write a file for each");
+    for (const RigTable& fixture : table.tables("fixture"))
+      rig.fixtures.push_back(read_fixture(fixture));
+    const auto need_specimen = [&](const char* key, const std::string& name, const char* does,
+                                   const std::vector<BoneName>& bones) {
+      for (const BoneName& bone : bones)
+        if (!rig.has(bone))
+          table.fail(key, fmt::format("'{}' {} {}, which is in no [[specimen]]; add it", name, does,
+                                      bone.text));
+    };
+    for (const RigPot& pot : rig.pots) need_specimen("pot", pot.name, "holds", pot.bones);
+    for (const RigFixture& fixture : rig.fixtures)
+      need_specimen("fixture", fixture.name, "touches", fixture.touches);
     table.finish();
     return rig;
   } catch (const toml::parse_error& e) {

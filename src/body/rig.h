@@ -1,6 +1,6 @@
 #pragma once
-// The test rig of a bone, read from a file: which bones are tested, where they stand, which ends
-// are potted, how the pots move. docs/manual/rig.md describes every key.
+// The test rig of bones, read from a file: which bones are tested, where they stand, which ends are
+// potted, what touches them, how all this moves. docs/manual/rig.md describes every key.
 #include <array>
 #include <optional>
 #include <string>
@@ -18,35 +18,83 @@ struct BoneName {
   std::string text;  // as written
 };
 
-// A curve of a motion over time: displacement [mm] or velocity [mm/ms]; of rotations [rad].
-struct RigMotion {
+// A curve over time: displacement [mm], velocity [mm/ms] or force [kN]; of rotations [rad],
+// [rad/ms], [kN mm].
+struct RigCurve {
   int dof = 0;  // 0 to 5: x y z rx ry rz
-  bool velocity = false;
+  enum Kind { displacement, velocity, force } kind = displacement;
   std::vector<std::pair<double, double>> points;  // [ms], value
+};
+
+// How a rigid part of the rig moves: its degrees of freedom are held unless they are free, moved
+// or loaded.
+struct RigSupport {
+  std::array<bool, 6> free{};  // x y z rx ry rz
+  std::optional<RigCurve> motion;
+  std::vector<RigCurve> loads;  // at the pivot
+  Point velocity{0, 0, 0};      // [mm/ms] at the start
+
+  bool holds(std::size_t dof) const;
 };
 
 // A bone that is taken out of the body and laid into the rig: the pivot of pot `from` at `at`, that
 // of pot `to` on the x axis through it; z is the direction `up` of the bone's frame made square to
-// x or, without it, the direction square to x in which the bone is flattest, towards the frame's
-// +Z.
+// x or, without it, the direction square to x in which the specimen is flattest, towards the
+// frame's +Z. Without pots the bone's frame is the rig's, its origin at `at`. The bones `with` it
+// keep their places beside it and what joins them to it.
 struct RigSpecimen {
   BoneName bone;
-  std::string from, to;
+  std::vector<BoneName> with;
+  std::string from, to;  // both empty: by the frame
   Point at{0, 0, 0};
   std::optional<Point> up;
+
+  std::vector<BoneName> bones() const;  // the bone and those with it
 };
 
 // The end of a bone that is potted: all nodes within `depth` of the farthest node in direction
-// `toward` of the bone's frame become one rigid body. Its degrees of freedom are held unless they
-// are free or moved. The pivot, about which it turns, is its centre of mass.
+// `toward` of the bone's frame become one rigid body. The pivot, about which it turns, is the mean
+// of these nodes or, with `pivot`, a point that far behind the open face of the pot, amid the nodes
+// there.
 struct RigPot {
   std::string name;
   std::vector<BoneName> bones;
   Point toward{0, 0, 1};
-  double depth = 0;            // [mm]
-  std::array<bool, 6> free{};  // x y z rx ry rz
-  std::optional<RigMotion> motion;
+  double depth = 0;             // [mm]
+  std::optional<double> pivot;  // [mm]
+  double mass = 0;              // [kg] of the cup, beside that of the bone in it
+  RigSupport support;
 };
+
+// A rigid part of the test machine that touches bones: impactor, plate, roller. It is moved from
+// `at` against `toward` until it stands clear of the bones by `gap`.
+struct RigFixture {
+  enum Shape { ball, cylinder, box };
+  // Deformable layer on the face of a box that looks toward the bones: low-density foam.
+  struct Pad {
+    double thickness = 0;                                // [mm]
+    double density = 0;                                  // [kg/mm3]
+    double modulus = 0;                                  // [GPa] in tension
+    std::vector<std::pair<double, double>> compression;  // nominal strain, stress [GPa]
+  };
+  std::string name;
+  Shape shape = ball;
+  double radius = 0;    // [mm] of ball and cylinder
+  double length = 0;    // [mm] of the cylinder along its axis
+  Point size{0, 0, 0};  // [mm] of the box: along axis, across, along toward
+  Point axis{0, 1, 0};  // of the cylinder, first edge of the box
+  Point at{0, 0, 0}, toward{0, 0, -1};
+  double gap = 0.1;    // [mm]
+  double element = 5;  // [mm] edge
+  double mass = 0;     // [kg]
+  double friction = 0.3;
+  std::vector<BoneName> touches;
+  std::optional<Pad> pad;
+  RigSupport support;
+};
+
+// does the pot hold an end of this bone?
+bool holds(const RigPot& pot, const BoneName& bone);
 
 struct Rig {
   std::string path;
@@ -55,11 +103,15 @@ struct Rig {
   double states_every = 0;    // [ms] of the animation; 0: a twentieth of the end time
   std::vector<RigSpecimen> specimens;
   std::vector<RigPot> pots;
+  std::vector<RigFixture> fixtures;
 
+  // are bones joined in it?
+  bool joined() const;
   // names of the bones to make, each once
   std::vector<std::string> bones() const;
   // is this bone part of the rig?
   bool tests(const PlacedBone& bone) const;
+  bool has(const BoneName& name) const;
 };
 
 // Throws BodyError with file, line, key and what may be written.

@@ -7,7 +7,9 @@
 #include <fstream>
 
 #include "body/materials.h"
+#include "body/mesh/quality.h"
 #include "body/mount.h"
+#include "body/shapes.h"
 
 using namespace fabrica;
 using namespace fabrica::body;
@@ -73,18 +75,31 @@ TEST_CASE("a rig is read, and what is wrong in it is said with its line") {
   const Rig rig = rig_of(good);
   CHECK(rig.bones() == std::vector<std::string>{"rib5"});
   CHECK(norm(rig.pots[0].toward) == doctest::Approx(1));
-  CHECK(rig.pots[0].free[5]);
-  CHECK(rig.pots[1].motion->velocity);
-  CHECK(rig.pots[1].motion->points[1].second == -1);
+  CHECK(rig.pots[0].support.free[5]);
+  REQUIRE(rig.pots[1].support.motion);
+  CHECK(rig.pots[1].support.motion->kind == RigCurve::velocity);
+  CHECK(rig.pots[1].support.motion->points[1].second == -1);
+  CHECK(rig.pots[0].support.holds(0));
+  CHECK_FALSE(rig.pots[0].support.holds(5));
+  CHECK_FALSE(rig.pots[1].support.holds(0));
 
   CHECK(refusal("end_time = 10", "end_time = 0").starts_with("1: end_time is 0, which is not"));
   CHECK(refusal("depth = 20", "depht = 20").starts_with("2: pot[1].depth is missing"));
   CHECK(refusal("right.rib5", "right.rib55").starts_with("4: pot[1].bones 'right.rib55' is no"));
   CHECK(refusal("\"rz\"", "\"rw\"").starts_with("7: pot[1].free 'rw' is no degree of freedom"));
   CHECK(refusal("[10, -1]", "[0, -1]").starts_with("13: pot[2].motion.velocity goes back in time"));
-  CHECK(refusal("velocity =", "speed =").starts_with("13: pot[2].motion.along wants either"));
+  CHECK(refusal("velocity =", "speed =").starts_with("13: pot[2].motion.along wants velocity or"));
   CHECK(refusal("\"posterior\", \"ant", "\"rear\", \"ant").find("'rear' is no pot of") !=
         std::string::npos);
+
+  CHECK(refusal("depth = 20", "depth = 20\npivot = 21")
+            .starts_with("7: pot[1].pivot is 21 mm behind"));
+  CHECK(refusal("free = [\"rz\"]", "start_velocity = [0, 0, 1]")
+            .starts_with("7: pot[1].start_velocity goes along z, which is held"));
+  CHECK(refusal("motion =", "load = [{ along = \"x\", force = [[0, 0], [1, 1]] }]\nmotion =")
+            .starts_with("13: pot[2].load pushes along x, which the motion moves"));
+  CHECK(refusal("at = [7, 8, 9]", "with = [\"right.rib5\", \"rib66\"]")
+            .starts_with("17: specimen[1].with 'rib66' is no bone"));
 }
 
 TEST_CASE("a specimen lies in the rig with its pots on the x axis, flat, unstrained") {
@@ -144,6 +159,199 @@ TEST_CASE("pots become rigid bodies whose section holds every element beside the
   CHECK(crossing > 0);
   CHECK(section.solids.size() == crossing);
   CHECK(section.shells.size() > 0);
+}
+
+TEST_CASE("a pot turns about its pivot, with the mass of the bone in it") {
+  const Rig rig = rig_of(good);
+  const Rig shifted = [] {
+    std::string text = good;
+    text.replace(text.find("depth = 20"), 10, "depth = 20\npivot = 8\nmass = 0.5");
+    return rig_of(text);
+  }();
+  std::vector<double> mass, distance;
+  for (const Rig& r : {rig, shifted}) {
+    Body body = specimens_of(r);
+    Diagnostics diagnostics;
+    Builder builder(diagnostics);
+    AssembledBody assembled = assemble(body, {}, builder);
+    const auto parts = mount(r, body, assembled, builder);
+    const auto model = builder.finish();
+    REQUIRE_FALSE(diagnostics.has_errors());
+    const Part& pot = model->parts[std::size_t(model->part_index(parts[0].id))];
+    REQUIRE(pot.inertia);
+    CHECK(norm(pot.inertia->center - parts[0].pivot) < 1e-9);
+    mass.push_back(pot.inertia->mass);
+    // how far the pivot lies behind the open face, along the direction of the pot
+    const PlacedBone& rib = body.bones[0];
+    const Point toward = rib.placement.R * r.pots[0].toward;
+    double far = -1e30;
+    for (const Point& p : rib.nodes) far = std::max(far, dot(p, toward));
+    distance.push_back(dot(parts[0].pivot, toward) - (far - r.pots[0].depth));
+  }
+  CHECK(mass[0] > 0);
+  CHECK(mass[1] - mass[0] == doctest::Approx(0.5));
+  CHECK(distance[1] == doctest::Approx(8));
+}
+
+namespace {
+
+// the good rig with a fixture above the flat rib, which may slide along z
+std::string with_fixture(const std::string& shape) {
+  return good + "[[fixture]]\nname = \"press\"\n" + shape +
+         "\nmass = 2\ngap = 0.25\nelement = 6\ntouches = [\"right.rib5\"]\nfree = [\"z\"]\n"
+         "start_velocity = [0, 0, -3]\n";
+}
+
+struct Fitted {
+  std::unique_ptr<Model> model;
+  std::int64_t id = 0;
+  Point centre;
+  std::vector<Point> bone;
+};
+Fitted fit(const Rig& rig) {
+  Body body = specimens_of(rig);
+  Diagnostics diagnostics;
+  Builder builder(diagnostics);
+  AssembledBody assembled = assemble(body, {}, builder);
+  const auto parts = mount(rig, body, assembled, builder);
+  Fitted fitted{builder.finish(), parts.back().id, parts.back().pivot, body.bones[0].nodes};
+  for (const Diagnostic& d : diagnostics.list()) INFO(diagnostics.format(d));
+  REQUIRE_FALSE(diagnostics.has_errors());
+  return fitted;
+}
+// nodes of the elements of a part
+std::vector<Point> nodes_of(const Model& model, std::int64_t part) {
+  std::vector<Point> out;
+  for (int e = 0; e < model.solids.size(); ++e)
+    if (model.solids.part[std::size_t(e)] == model.part_index(part))
+      for (std::size_t k = 0; k < 8; ++k)
+        out.push_back(model.nodes.x[std::size_t(model.solids.node[std::size_t(e)][k])]);
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("a fixture stands clear of the bone by its gap and the reach of the shells") {
+  // over the middle of the rib, as high as the bone lets it
+  const std::string at = "at = [77, -40, 500]";
+  const Fitted box = fit(rig_of(with_fixture("shape = \"box\"\nsize = [80, 120, 10]\n" + at)));
+  double top = -1e30;
+  for (const Point& p : box.bone)
+    if (std::abs(p.y + 40) < 40 && std::abs(p.x - 77) < 60) top = std::max(top, p.z);
+  double low = 1e30;
+  for (const Point& p : nodes_of(*box.model, box.id)) low = std::min(low, p.z);
+  // cortex of ribs: at most 2 mm thick
+  CHECK(low - top >= 0.25);
+  CHECK(low - top <= 0.25 + 1.0);
+  CHECK(box.centre.z == doctest::Approx(low + 5));
+  // its contact holds the bone's parts and itself; it flies
+  bool found = false;
+  for (const auto& contact : box.model->contacts) found = found || contact.id == box.id;
+  CHECK(found);
+
+  for (const std::string shape :
+       {"shape = \"ball\"\nradius = 60\n", "shape = \"cylinder\"\nradius = 60\nlength = 160\n"}) {
+    const Fitted round = fit(rig_of(with_fixture(shape + at)));
+    const bool ball = shape.find("ball") != std::string::npos;
+    double nearest = 1e30;
+    for (const Point& p : round.bone) {
+      const Point r = p - round.centre;
+      if (!ball && std::abs(r.y) > 80) continue;
+      nearest = std::min(nearest, (ball ? norm(r) : std::hypot(r.x, r.z)) - 60);
+    }
+    CHECK(nearest > 0);
+    // along the slide the gap is kept exactly; square to the surface it is a little less
+    CHECK(nearest < 0.25 + 1.0);
+  }
+}
+
+TEST_CASE("a fixture that passes the bone by is refused") {
+  const Rig rig = rig_of(with_fixture("shape = \"ball\"\nradius = 3\nat = [-500, 0, 0]"));
+  CHECK_THROWS_WITH_AS(fit(rig), doctest::Contains("fixture 'press' passes right.rib5 by"),
+                       BodyError);
+}
+
+TEST_CASE("a pad lies between the fixture and the bone and shares its face") {
+  const Fitted press = fit(rig_of(with_fixture(
+      "shape = \"box\"\nsize = [24, 48, 10]\nat = [77, -60, 0]\npad = { thickness = 6, density = "
+      "1.5e-8, modulus = 1, compression = [[0, 0], [1, 0.1]] }")));
+  const std::vector<Point> rigid = nodes_of(*press.model, press.id),
+                           pad = nodes_of(*press.model, press.id + 1);
+  REQUIRE(!pad.empty());
+  double low = 1e30, pad_low = 1e30, pad_top = -1e30;
+  for (const Point& p : rigid) low = std::min(low, p.z);
+  for (const Point& p : pad) pad_low = std::min(pad_low, p.z), pad_top = std::max(pad_top, p.z);
+  CHECK(pad_top == doctest::Approx(low));
+  CHECK(pad_low == doctest::Approx(low - 6));
+  // 4 x 8 bricks a layer, two layers in the box and two in the pad, all turned the right way
+  CHECK(rigid.size() == 8 * 4 * 8 * 2);
+  CHECK(pad.size() == 8 * 4 * 8 * 2);
+}
+
+TEST_CASE("shapes hold their volume with bricks of the right hand") {
+  const double pi = 3.14159265358979;
+  CHECK(box_mesh({20, 30, 10}, 5).volume() == doctest::Approx(6000));
+  CHECK(box_mesh({20, 30, 10}, 5, 4).volume() == doctest::Approx(6000));
+  CHECK(cylinder_mesh(10, 40, 1).volume() == doctest::Approx(pi * 100 * 40).epsilon(0.01));
+  CHECK(ball_mesh(10, 1).volume() == doctest::Approx(4.0 / 3 * pi * 1000).epsilon(0.01));
+  for (const ShapeMesh& mesh :
+       {box_mesh({20, 30, 10}, 5, 4), cylinder_mesh(10, 40, 4), ball_mesh(10, 3)})
+    for (const auto& brick : mesh.bricks) CHECK(volume_of(corners_of(mesh.nodes, brick)) > 0);
+}
+
+TEST_CASE("joined bones keep their places beside each other, with what joins them") {
+  const std::string unit = R"(end_time = 10
+[[pot]]
+name = "lower"
+bones = ["L4"]
+toward = [0, 0, -1]
+depth = 300
+[[pot]]
+name = "upper"
+bones = ["L3"]
+toward = [0, 0, 1]
+depth = 300
+free = ["x", "y", "z", "ry"]
+load = [{ along = "ry", force = [[0, 0], [10, 10]] }]
+[[specimen]]
+bone = "L4"
+with = ["L3"]
+at = [1, 2, 3]
+)";
+  const Rig rig = rig_of(unit);
+  REQUIRE(rig.joined());
+  BodyOptions options;
+  options.only = rig.bones();
+  const Body before = build_body(options);
+  Body body = build_body(options);
+  place_specimens(rig, body);
+  REQUIRE(body.bones.size() == 2);
+  const PlacedBone& lead = body.bones[std::size_t(find_bone(body.bones, "L4", Side::midline))];
+  CHECK(norm(lead.placement.t - Point{1, 2, 3}) < 1e-9);
+  for (int i = 0; i < 3; ++i) CHECK(lead.placement.R(i, i) == doctest::Approx(1));
+  CHECK(norm(body.bones[0].nodes[5] - body.bones[1].nodes[7]) ==
+        doctest::Approx(norm(before.bones[0].nodes[5] - before.bones[1].nodes[7])));
+  // the disc goes with them
+  int own = 0;
+  for (std::size_t p = 0; p < body.between.pieces.size(); ++p)
+    for (std::size_t n = 0; n < body.between.pieces[p].nodes.size(); ++n) {
+      const PieceNode &moved = body.between.pieces[p].nodes[n],
+                      &was = before.between.pieces[p].nodes[n];
+      if (moved.bone >= 0 || moved.piece >= 0) continue;
+      ++own;
+      CHECK(norm(moved.x - body.bones[0].nodes[0]) ==
+            doctest::Approx(norm(was.x - before.bones[0].nodes[0])).epsilon(1e-9));
+    }
+  CHECK(own > 0);
+
+  Diagnostics diagnostics;
+  Builder builder(diagnostics);
+  AssembledBody assembled = assemble(body, {}, builder);
+  const auto parts = mount(rig, body, assembled, builder);
+  const auto model = builder.finish();
+  REQUIRE_FALSE(diagnostics.has_errors());
+  REQUIRE(parts.size() == 2);
+  CHECK(model->cross_sections.empty());  // bones that are potted whole have none
 }
 
 // e_p + s(e_p) / E = e in closed form: for a straight line e_p = (e - SIGY / E) / (1 + H / E) with

@@ -7,6 +7,9 @@
 #include <cmath>
 #include <functional>
 
+#include "body/id_rows.h"
+#include "body/shapes.h"
+
 namespace fabrica::body {
 namespace {
 
@@ -39,16 +42,11 @@ class Walls {
     nodes.options = {"TITLE"};
     nodes.title = name;
     nodes.set("sid", set);
-    std::vector<double> row;
-    for (std::size_t b = 0; b < body_.bones.size(); ++b) {
-      if (!accept(body_.bones[b])) continue;
-      for (const std::int64_t id : assembled_.bone_node[b]) {
-        row.push_back(double(id));
-        if (row.size() == 8) nodes.add_row(row), row.clear();
-      }
-    }
-    row.resize(8, 0.0);
-    nodes.add_row(row);
+    std::vector<std::int64_t> ids;
+    for (std::size_t b = 0; b < body_.bones.size(); ++b)
+      if (accept(body_.bones[b]))
+        ids.insert(ids.end(), assembled_.bone_node[b].begin(), assembled_.bone_node[b].end());
+    add_ids(nodes, ids.size(), [&](std::size_t i) { return ids[i]; });
     const Point tail = (at - clearance) * normal, head = tail + normal;
     Card& wall = builder_.add_card("RIGIDWALL_PLANAR");
     wall.options = {"ID"};
@@ -128,9 +126,8 @@ void drop(const Body& body, AssembledBody& assembled, Builder& builder) {
   builder.add_card("INITIAL_VELOCITY").set("nsid", 0).set("vz", -std::sqrt(2 * gravity * height));
 }
 
-// A rigid ball of bricks: a cube of n x n x n mapped onto it.
+// a rigid ball flies at the breastbone
 void ball(const Body& body, AssembledBody& assembled, Builder& builder) {
-  constexpr int n = 6;
   constexpr double radius = 75, mass = 5, speed = 3;
   const double volume = 4.0 / 3 * 3.14159265358979 * radius * radius * radius;
   const Placement& thorax = body.skeleton.frame("thorax");
@@ -152,27 +149,14 @@ void ball(const Body& body, AssembledBody& assembled, Builder& builder) {
     }
   }
   const Point centre = middle + (front + 0.5) * forward;
-  const auto id = [&](int i, int j, int k) {
-    return assembled.next_node + (i * (n + 1) + j) * (n + 1) + k;
-  };
-  for (int i = 0; i <= n; ++i)
-    for (int j = 0; j <= n; ++j)
-      for (int k = 0; k <= n; ++k) {
-        const double x = 2.0 * i / n - 1, y = 2.0 * j / n - 1, z = 2.0 * k / n - 1;
-        const Point p{x * std::sqrt(1 - y * y / 2 - z * z / 2 + y * y * z * z / 3),
-                      y * std::sqrt(1 - z * z / 2 - x * x / 2 + z * z * x * x / 3),
-                      z * std::sqrt(1 - x * x / 2 - y * y / 2 + x * x * y * y / 3)};
-        builder.add_node(id(i, j, k), centre + radius * p);
-      }
-  const std::int64_t part = assembled.next_part++;
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j)
-      for (int k = 0; k < n; ++k) {
-        const std::int64_t c[8] = {
-            id(i, j, k),     id(i + 1, j, k),     id(i + 1, j + 1, k),     id(i, j + 1, k),
-            id(i, j, k + 1), id(i + 1, j, k + 1), id(i + 1, j + 1, k + 1), id(i, j + 1, k + 1)};
-        builder.add_solid(assembled.next_element++, part, c, 8);
-      }
+  const ShapeMesh mesh = ball_mesh(radius, 25);
+  const std::int64_t first_node = assembled.next_node, part = assembled.next_part++;
+  for (const Point& p : mesh.nodes) builder.add_node(assembled.next_node++, centre + p);
+  for (const std::array<int, 8>& brick : mesh.bricks) {
+    std::array<std::int64_t, 8> corner{};
+    for (std::size_t k = 0; k < 8; ++k) corner[k] = first_node + brick[k];
+    builder.add_solid(assembled.next_element++, part, corner.data(), 8);
+  }
   builder.add_card("SECTION_SOLID").set("secid", 8000001).set("elform", 1);
   builder.add_card("MAT_RIGID")
       .set("mid", 8000001)
@@ -191,17 +175,15 @@ void ball(const Body& body, AssembledBody& assembled, Builder& builder) {
   Card& set = builder.add_card("SET_PART_LIST");
   const double thorax_set = double(++assembled.next_set);
   set.set("sid", thorax_set);
-  std::vector<double> row;
+  std::vector<std::int64_t> ids;
   for (const PartEntry& e : assembled.parts) {
     if (e.bone < 0 || body.bones[std::size_t(e.bone)].region != Region::thorax) continue;
     if (!one_of(body.bones[std::size_t(e.bone)].mesh.name,
                 {"rib", "costal", "sternum", "manubrium", "xiphoid"}))
       continue;
-    row.push_back(double(e.id));
-    if (row.size() == 8) set.add_row(row), row.clear();
+    ids.push_back(e.id);
   }
-  row.resize(8, 0.0);
-  set.add_row(row);
+  add_ids(set, ids.size(), [&](std::size_t i) { return ids[i]; });
   Card& c = builder.add_card("CONTACT_AUTOMATIC_SURFACE_TO_SURFACE");
   c.options = {"ID"};
   c.set("cid", 8000001).set("heading", "ball on the breastbone");

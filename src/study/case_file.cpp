@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "study/measure.h"
 #include "study/toml_fields.h"
 
 namespace fabrica::study {
@@ -28,6 +29,9 @@ SignalSpec read_signal(Fields f) {
   s.x_unit = f.text("x_unit", "");
   s.scale = f.number("scale", 1);
   s.x_scale = f.number("x_scale", 1);
+  s.start_at = f.maybe_number("start_at");
+  if (s.start_at && *s.start_at <= 0)
+    f.fail("start_at", "is not above 0", "Give the magnitude from which contact counts as made");
   s.filter = f.text("filter", "");
   if (!s.filter.empty()) one_of(f, "filter", s.filter, {"CFC60", "CFC180", "CFC600", "CFC1000"});
   s.reference = f.text("reference", "");
@@ -59,7 +63,7 @@ CheckSpec read_check(Fields f, bool limit) {
   c.statistic = f.text("statistic", "last");
   if (single && f.has("statistic"))
     f.fail("statistic", "is given for a single number", "Remove it");
-  one_of(f, "statistic", c.statistic, {"mean", "last", "max", "min", "peak", "magnitude"});
+  one_of(f, "statistic", c.statistic, statistic_names());
   if (limit) {
     c.least = f.maybe_number("least"), c.most = f.maybe_number("most");
     if (!c.least && !c.most) f.fail("", "a limit without a bound", "Give least, most or both");

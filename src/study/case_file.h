@@ -18,6 +18,7 @@ struct SignalSpec {
   std::string x_unit;  // likewise of the abscissa
   double scale = 1;    // from the result's unit into `unit`
   double x_scale = 1;
+  std::optional<double> start_at;   // in `unit`: the abscissa counts from where |y| reaches it
   std::string filter;               // "CFC60", "CFC180", "CFC600", "CFC1000", or none
   std::string reference;            // "file.csv:column", or none
   std::string reference_x;          // its abscissa: a column of the same file; empty: the first one
@@ -31,11 +32,11 @@ struct SignalSpec {
 // A number of the result and what it must be.
 struct CheckSpec {
   std::string name;
-  std::string model;  // as of a signal, a quotient "a / b" of two,
+  std::string model;  // as of a signal,
                       // "rating:<signal>:<method>[:part]" or "fit:<name>:<coefficient>"
   std::string over;   // the mean is taken over this, not over time
   std::optional<std::pair<double, double>> range;  // of `over`
-  std::string statistic;                           // mean, last, max, min, peak, magnitude
+  std::string statistic;                           // one of statistic_names()
   std::optional<double> expected;
   double tolerance = 0;  // relative to expected, absolute where that is 0
   std::optional<double> least, most;

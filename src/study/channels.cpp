@@ -1,5 +1,6 @@
 #include "study/channels.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -37,7 +38,19 @@ std::string files_of(const std::string& folder) {
   return list.empty() ? "none" : list;
 }
 
-std::size_t quotient_at(const std::string& text) { return text.find(" / "); }
+// where the last operator stands that binds least: " + " and " - " before " / "; npos: none
+std::size_t operator_at(const std::string& text) {
+  const std::size_t plus = text.rfind(" + "), minus = text.rfind(" - ");
+  if (plus == std::string::npos && minus == std::string::npos) return text.rfind(" / ");
+  if (plus == std::string::npos || minus == std::string::npos) return std::min(plus, minus);
+  return std::max(plus, minus);
+}
+
+double combine(char operation, double a, double b) {
+  if (operation == '+') return a + b;
+  if (operation == '-') return a - b;
+  return b != 0 ? a / b : 0;
+}
 
 }  // namespace
 
@@ -95,15 +108,15 @@ std::size_t Channels::find_column(const CsvTable& table, const std::string& name
 }
 
 std::vector<double> Channels::column(const std::string& text) {
-  if (const std::size_t at = quotient_at(text); at != std::string::npos) {
-    std::vector<double> above = column(text.substr(0, at));
-    const std::vector<double> below = column(text.substr(at + 3));
-    if (above.size() != below.size())
+  if (const std::size_t at = operator_at(text); at != std::string::npos) {
+    std::vector<double> left = column(text.substr(0, at));
+    const std::vector<double> right = column(text.substr(at + 3));
+    if (left.size() != right.size())
       throw StudyError("'" + text + "': the two are not sampled at the same times. " +
                        "Give both databases one interval");
-    for (std::size_t i = 0; i < above.size(); ++i)
-      above[i] = below[i] != 0 ? above[i] / below[i] : 0;
-    return above;
+    for (std::size_t i = 0; i < left.size(); ++i)
+      left[i] = combine(text[at + 1], left[i], right[i]);
+    return left;
   }
   const CsvTable& table = table_of(text).table;
   const auto& values = table.columns[find_column(table, column_of(text), text)];
@@ -112,8 +125,8 @@ std::vector<double> Channels::column(const std::string& text) {
 }
 
 std::vector<double> Channels::abscissa(const std::string& text) {
-  const std::size_t at = quotient_at(text);
-  return table_of(at == std::string::npos ? text : text.substr(0, at)).table.columns[0];
+  const std::size_t at = operator_at(text);
+  return at == std::string::npos ? table_of(text).table.columns[0] : abscissa(text.substr(0, at));
 }
 
 namespace {

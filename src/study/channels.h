@@ -22,8 +22,8 @@ class Channels {
   Channels(std::string histories, std::string folder)
       : histories_(std::move(histories)), folder_(std::move(folder)) {}
 
-  // Values of "database:column", "file.csv:column" or of a quotient "a / b" of two of them. Throws
-  // StudyError naming what is missing and what there is instead.
+  // Values of "database:column" or "file.csv:column", or of such joined by " + ", " - " and " / "
+  // (which binds more). Throws StudyError naming what is missing and what there is instead.
   std::vector<double> column(const std::string& text);
   // The first column of the table that `text` names: time in histories.
   std::vector<double> abscissa(const std::string& text);

@@ -7,6 +7,7 @@
 #include "body/tables.h"
 #include "signal/units.h"
 #include "study/error.h"
+#include "study/measure.h"
 #include "study/rate_curve.h"
 
 namespace fabrica::study {
@@ -50,6 +51,10 @@ Curve model_curve(const SignalSpec& s, Channels& channels) {
       throw StudyError("'" + s.model + "' holds a value that is not a number. Look at the run");
   scale(y, s.scale);
   scale(x, s.x_scale);
+  if (s.start_at) {
+    const double from = first_reaching(x, y, *s.start_at);
+    for (double& v : x) v -= from;
+  }
   return {std::move(x), std::move(y)};
 }
 

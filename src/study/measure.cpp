@@ -70,6 +70,34 @@ std::vector<double> within(const std::pair<double, double>& range, const std::ve
 
 }  // namespace
 
+double first_reaching(const std::vector<double>& x, const std::vector<double>& y, double level) {
+  for (std::size_t i = 0; i < y.size() && i < x.size(); ++i) {
+    const double now = std::abs(y[i]);
+    if (now < level) continue;
+    if (i == 0) return x[0];
+    const double before = std::abs(y[i - 1]);
+    return x[i - 1] + (level - before) / (now - before) * (x[i] - x[i - 1]);
+  }
+  throw StudyError(
+      fmt::format("the curve never reaches {:g}, from which it counts. Correct start_at", level));
+}
+
+const std::vector<std::string>& statistic_names() {
+  static const std::vector<std::string> names{"mean", "last",      "max",    "min",
+                                              "peak", "magnitude", "failure"};
+  return names;
+}
+
+double failure_load(const std::vector<double>& y) {
+  double peak = 0, largest = 0;
+  for (const double v : y) peak = std::max(peak, std::abs(v));
+  for (const double v : y) {
+    largest = std::max(largest, std::abs(v));
+    if (largest >= 0.5 * peak && std::abs(v) <= 0.7 * largest) break;
+  }
+  return largest;
+}
+
 double statistic(const CheckSpec& c, Channels& channels) {
   std::vector<double> y = channels.column(c.model);
   for (const double v : y)
@@ -85,6 +113,7 @@ double statistic(const CheckSpec& c, Channels& channels) {
   if (c.statistic == "last") return y.back();
   if (c.statistic == "max") return *std::max_element(y.begin(), y.end());
   if (c.statistic == "min") return *std::min_element(y.begin(), y.end());
+  if (c.statistic == "failure") return failure_load(y);
   const double peak = *std::max_element(
       y.begin(), y.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
   return c.statistic == "peak" ? peak : std::abs(peak);

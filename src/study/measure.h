@@ -23,8 +23,20 @@ struct CheckResult {
 double mean_over(const std::vector<double>& x, const std::vector<double>& y, double low,
                  double high);
 
-// The statistic that a check asks for; mean, last, max, min, or peak (the value of largest
-// magnitude, with its sign) or magnitude (without); of the samples within its range, if it has one.
+// The abscissa at which the magnitude of y first reaches a level, between two samples by a straight
+// line. Throws StudyError if it never does.
+double first_reaching(const std::vector<double>& x, const std::vector<double>& y, double level);
+
+// The statistics that a check may ask for: mean, last, max, min, peak (the value of largest
+// magnitude, with its sign), magnitude (without) and failure (see failure_load).
+const std::vector<std::string>& statistic_names();
+
+// The load at which something gave way: the largest magnitude before the magnitude first falls to
+// 70 % of it, counted from half the overall peak on, so that neither ripples at the start nor what
+// swings after the fracture counts. Without such a fall the overall peak.
+double failure_load(const std::vector<double>& y);
+
+// The statistic that a check asks for, of the samples within its range, if it has one.
 double statistic(const CheckSpec& check, Channels& channels);
 
 // The outcome of a check. `named` gives numbers that are no columns ("rating:...", "fit:...").

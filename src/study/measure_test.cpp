@@ -51,6 +51,21 @@ TEST_CASE("statistics of a column are those of its numbers") {
   CHECK(value(channels, "mean", "a:u") == doctest::Approx(-5.0 / 15));
 }
 
+TEST_CASE("the load at failure is neither a ripple before it nor a swing after it") {
+  // ripple, rise, fall to 80 %, rise, fracture, larger swing
+  CHECK(failure_load({0, -0.2, 0, -3, -5, -4, -6, -1, 5, -7, 0}) == 6);
+  CHECK(failure_load({0, 1, 2, 3}) == 3);       // nothing gave way
+  CHECK(failure_load({0, 4, 2.9, 9, 0}) == 9);  // at less than half the peak nothing is counted
+  CHECK(failure_load({}) == 0);
+}
+
+TEST_CASE("a curve counts from where it first reaches a level, whatever its sign") {
+  CHECK(first_reaching({0, 1, 2}, {0, -1, -3}, 2) == doctest::Approx(1.5));
+  CHECK(first_reaching({5, 6}, {4, 0}, 2) == 5);
+  CHECK_THROWS_WITH_AS(first_reaching({0, 1}, {0, 1}, 2), doctest::Contains("never reaches 2"),
+                       StudyError);
+}
+
 // f is 0, 2, -6, 4 at the times 0 to 3
 TEST_CASE("a range bounds every statistic") {
   const Result r;
@@ -67,10 +82,14 @@ TEST_CASE("a range bounds every statistic") {
                        StudyError);
 }
 
-TEST_CASE("a quotient, a unit, and the head of a file are found") {
+TEST_CASE("a quotient, a sum, a unit, and the head of a file are found") {
   const Result r;
   Channels channels(r.path.string(), r.path.string());
   CHECK(channels.column("a:f:1 / a:u") == std::vector<double>{0, 0.2, -0.3, 4.0 / 15});
+  CHECK(channels.column("a:f:1 + a:u") == std::vector<double>{0, 12, 14, 19});
+  // from left to right, quotients first
+  CHECK(channels.column("a:u - a:f:1 / a:f:1 - a:u") == std::vector<double>{0, -1, -1, -1});
+  CHECK(channels.abscissa("a:f:1 + a:u / a:u") == channels.abscissa("a:f:1"));
   CHECK(channels.unit("ref.csv:g") == "kN");
   CHECK(channels.unit("ref.csv:h_mm") == "mm");
   CHECK(channels.head("ref.csv:g").at("provenance") == "digitised by hand");

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "study/measure.h"
 #include "study/outcome.h"
 #include "study/sampling.h"
 #include "study/toml_fields.h"
@@ -132,10 +133,10 @@ OutputSpec read_output(Fields f) {
   o.measure.over = f.text("over", "");
   o.measure.range = f.interval("range");
   o.measure.statistic = f.text("statistic", "last");
-  const std::vector<std::string> known = {"mean", "last", "max", "min", "peak", "magnitude"};
+  const std::vector<std::string>& known = statistic_names();
   if (std::find(known.begin(), known.end(), o.measure.statistic) == known.end())
     f.fail("statistic", "'" + o.measure.statistic + "' is not known",
-           "Take mean, last, max, min, peak or magnitude");
+           fmt::format("Take one of {}", fmt::join(known, ", ")));
   o.reference = f.text("reference", "");
   f.finish();
   return o;
