@@ -33,7 +33,7 @@ bool spin(Done done) {
 
 }  // namespace
 
-Team::Team(int threads) : size_(std::max(1, threads)) {
+Team::Team(int threads) : size_(std::max(1, threads)), shares_(size_) {
   for (int i = 1; i < size_; ++i) threads_.emplace_back([this, i] { worker(i); });
 }
 
@@ -45,9 +45,13 @@ Team::~Team() {
 }
 
 void Team::start(int chunks, Function function, void* data) {
-  function_ = function, data_ = data;
+  function_ = function, data_ = data, chunks_ = chunks;
   done_.store(0, std::memory_order_relaxed);
-  ticket_.store(std::uint64_t(chunks) << 32, std::memory_order_release);
+  for (int t = 0; t < size_; ++t) {
+    const std::uint64_t first = std::uint64_t(chunks) * t / size_,
+                        end = std::uint64_t(chunks) * (t + 1) / size_;
+    shares_[t].ticket.store((end << 32) + first, std::memory_order_release);
+  }
   loop_.fetch_add(1, std::memory_order_release);
   loop_.notify_all();
   work(0);
@@ -57,12 +61,18 @@ void Team::start(int chunks, Function function, void* data) {
 }
 
 void Team::work(int thread) {
-  for (;;) {
-    const std::uint64_t taken = ticket_.fetch_add(1, std::memory_order_acq_rel);
-    const int chunks = int(taken >> 32), chunk = int(taken & 0xffffffffu);
-    if (chunk >= chunks) return;
-    function_(data_, chunk, thread);
-    if (done_.fetch_add(1, std::memory_order_acq_rel) + 1 == chunks) done_.notify_one();
+  // first the own share, then those of the others
+  for (int k = 0; k < size_; ++k) {
+    std::atomic<std::uint64_t>& ticket = shares_[(thread + k) % size_].ticket;
+    for (;;) {
+      const std::uint64_t taken = ticket.fetch_add(1, std::memory_order_acq_rel);
+      const int end = int(taken >> 32), chunk = int(taken & 0xffffffffu);
+      if (chunk >= end) break;
+      // those who wait are told by the last chunk alone; the number is of the loop that it is of
+      const int chunks = chunks_;
+      function_(data_, chunk, thread);
+      if (done_.fetch_add(1, std::memory_order_acq_rel) + 1 == chunks) done_.notify_one();
+    }
   }
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 // A team of threads that stays alive between loops. Work is a range of fixed chunks; which thread
 // takes which chunk never changes a result, because chunks write to their own places and sums are
-// made in chunk order.
+// made in chunk order. Every thread begins with its own share, the same one in every loop of that
+// many chunks, so that what it wrote last time lies in its own caches; who is done takes from the
+// shares of others.
 #include <atomic>
 #include <cstdint>
 #include <thread>
@@ -41,14 +43,19 @@ class Team {
 
   int size_;
   std::vector<std::thread> threads_;
-  // (chunks << 32) + the next chunk to take; one addition takes it, and may run past the last
-  alignas(64) std::atomic<std::uint64_t> ticket_{0};
+  // A thread's share: (its end << 32) + the next chunk to take; one addition takes it, and may run
+  // past the end.
+  struct alignas(64) Share {
+    std::atomic<std::uint64_t> ticket{0};
+  };
+  std::vector<Share> shares_;
   alignas(64) std::atomic<int> done_{0};  // chunks of this loop that are finished
   alignas(64) std::atomic<int> loop_{0};  // counts loops; workers sleep on it
   std::atomic<bool> stop_{false};
-  // written before the ticket, read only by who holds a chunk
+  // written before the tickets, read only by who holds a chunk
   Function function_ = nullptr;
   void* data_ = nullptr;
+  int chunks_ = 0;
 };
 
 }  // namespace fabrica

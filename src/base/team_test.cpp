@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <atomic>
 #include <chrono>
 #include <thread>
 
@@ -36,5 +37,25 @@ TEST_CASE("team: a loop ends when its slowest chunk has ended") {
       done[std::size_t(chunk)] = 1;
     });
     for (const int d : done) REQUIRE(d == 1);
+  }
+}
+
+// Thread t of T begins with chunk [C t / T], whichever thread comes first: nobody goes on before
+// all have begun.
+TEST_CASE("team: every thread begins with its own share") {
+  const int threads = 3, chunks = 11;
+  Team team(threads);
+  for (int loop = 0; loop < 50; ++loop) {
+    std::vector<int> begun(threads, -1), runs(chunks, 0);
+    std::atomic<int> present{0};
+    team.for_each(chunks, [&](int chunk, int thread) {
+      ++runs[std::size_t(chunk)];
+      if (begun[std::size_t(thread)] >= 0) return;
+      begun[std::size_t(thread)] = chunk;
+      ++present;
+      while (present < threads) std::this_thread::yield();
+    });
+    for (int t = 0; t < threads; ++t) REQUIRE(begun[std::size_t(t)] == chunks * t / threads);
+    for (const int r : runs) REQUIRE(r == 1);
   }
 }

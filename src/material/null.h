@@ -54,6 +54,7 @@ struct Null {
     return m;
   }
   Elastic elastic() const { return {density, bulk, shear}; }
+  bool may_fail() const { return expansion > 0 || collapse > 0; }
 
   template <class L>
   FABRICA_FN Sym3<L> stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point,

@@ -39,6 +39,7 @@ struct PiecewiseLinearPlasticity {
 
   static PiecewiseLinearPlasticity from(const Parameters& p);
   Elastic elastic() const { return {density, moduli.bulk, moduli.shear}; }
+  bool may_fail() const { return failure_strain > 0; }
 
   template <class L>
   FABRICA_FN Sym3<L> stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point,

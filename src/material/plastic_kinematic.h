@@ -46,6 +46,7 @@ struct PlasticKinematic {
             p.integer("vp") == 1};
   }
   Elastic elastic() const { return {density, moduli.bulk, moduli.shear}; }
+  bool may_fail() const { return failure_strain > 0; }
 
   template <class L>
   FABRICA_FN Sym3<L> stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point,

@@ -12,7 +12,8 @@
 //                                                  before the call
 //   static constexpr int rotated                   how many
 //   static constexpr bool total                    false: rate law, true: law of the deformation
-//   gradient static constexpr bool can_fail                 true: may set Point::alive to 0
+//   gradient static constexpr bool can_fail                 true: may set Point::alive to 0; then
+//   bool may_fail() const                          whether it does so with these parameters
 // and one of
 //   Sym3<L> stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point, State<L>& state)
 //   const  (rate)

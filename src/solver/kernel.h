@@ -8,6 +8,7 @@
 
 #include "element/kernel.h"
 #include "model/model.h"
+#include "model/state.h"
 
 namespace fabrica {
 
@@ -30,6 +31,23 @@ struct ElementEnergy {
   bool failed = false;
 };
 
+// Nodes of the tile that is likely to come next on this thread, asked for in even shares while the
+// blocks of this tile are computed.
+struct NodesAhead {
+  const int* node = nullptr;
+  int count = 0;
+  const NodeMotion* motion = nullptr;
+  const NodeSpin* spin = nullptr;  // or null
+  // share b of `shares`
+  void fetch(int b, int shares) const {
+    const int first = int(std::int64_t(count) * b / shares),
+              last = int(std::int64_t(count) * (b + 1) / shares);
+    for (int k = first; k < last; ++k) __builtin_prefetch(motion + node[k], 0, 2);
+    if (spin)
+      for (int k = first; k < last; ++k) __builtin_prefetch(spin + node[k], 0, 2);
+  }
+};
+
 // What one call works on. Blocks of block_size elements; the last block may be padded with copies
 // of the tile's last element whose forces are dropped.
 struct TileView {
@@ -43,6 +61,7 @@ struct TileView {
   // nodal-pressure elements: per local node averaged volume rate and pressure, or null
   const Real* node_rate = nullptr;
   const Real* node_pressure = nullptr;
+  NodesAhead ahead;
   // set-up only
   const float* thickness = nullptr;    // [element][4]
   const Vec3d* orientation = nullptr;  // [element]
@@ -69,12 +88,18 @@ struct ElementReadout {
   double alive = 1;
 };
 
+// Asks memory for the history of a block, one cache line per field, before its turn comes. A block
+// takes longer to compute than its lines take to arrive, and no processor looks that far ahead.
+inline void fetch_history(const Real* block, int fields) {
+  for (int f = 0; f < fields; ++f) __builtin_prefetch(block + f * block_size, 1);
+}
+
 class Kernel {
  public:
   virtual ~Kernel() = default;
   virtual int corners() const = 0;
   virtual bool rotations() const = 0;
-  virtual bool can_fail() const = 0;
+  virtual bool can_fail() const = 0;  // with the parameters of its law
   virtual bool nodal_pressure() const { return false; }
   // first pass of nodal-pressure elements, see solver/cpu/nodal_tet.h
   virtual void nodal_rates(const ElementParameters&, Real, TileView&) const {}

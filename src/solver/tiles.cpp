@@ -324,6 +324,14 @@ TileView Tiles::view_of(const Tile& t, const NodeRecord* nodes, const SpinRecord
   return view;
 }
 
+NodesAhead Tiles::nodes_of(const State& state, int tile) const {
+  if (tile >= int(tiles.size())) return {};
+  const Tile& t = tiles[tile];
+  const bool rotations = classes[t.tile_class].kernel->rotations();
+  return {&node[t.node_first], t.node_count, state.nodes.data(),
+          rotations ? state.spins.data() : nullptr};
+}
+
 // volume rates of nodal-pressure tetrahedra to their nodes
 void Tiles::nodal_rates(State& state, Team& team) {
   team.for_each(int(nodal_tiles_.size()), [&](int i, int) {
@@ -343,8 +351,10 @@ void Tiles::forces(State& state, Team& team) {
     Tile& t = tiles[i];
     const TileClass& c = classes[t.tile_class];
     Scratch& s = scratch(t.node_count);
+    fetch_history(state_.data() + t.state, c.fields);
     fill_nodes(state, t, s.nodes.data(), c.kernel->rotations() ? s.spins.data() : nullptr);
     TileView view = view_of(t, s.nodes.data(), s.spins.data());
+    view.ahead = nodes_of(state, i + 1);
     if (c.kernel->nodal_pressure()) {
       view.node_rate = nodal_pressure_.rate(t.node_first);
       view.node_pressure = nodal_pressure_.pressure(t.node_first);

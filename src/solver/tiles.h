@@ -100,6 +100,7 @@ class Tiles {
   void initialise(const Model& model);
   void fill_nodes(const State& state, const Tile& tile, NodeRecord* nodes, SpinRecord* spins) const;
   TileView view_of(const Tile& tile, const NodeRecord* nodes, const SpinRecord* spins);
+  NodesAhead nodes_of(const State& state, int tile) const;
   void nodal_rates(State& state, Team& team);
   std::vector<double> mass_, inertia_;
   std::vector<int> nodal_tiles_;

@@ -80,6 +80,24 @@ TEST_CASE("V28: the energy of a bar is constant while it tears") {
   CHECK(run.state().energy.eroded_kinetic == 0);
 }
 
+// Energies element by element are kept only where the parameters of a law let something fail.
+TEST_CASE("V28: a law without a failure strain keeps no energies of elements") {
+  for (const double failure : {0.0, 1e-3}) {
+    Deck deck;
+    deck.end(1e3);
+    deck.key("SECTION_SOLID").card(1, 1);
+    deck.key("MAT_PLASTIC_KINEMATIC")
+        .card(1, rho, young, 0.0, 0.2, 1.0, 1.0)
+        .card(0.0, 0.0, failure);
+    deck.part(1, 1, 1);
+    bricks(
+        deck, 1, 1, 1, [](int i, int j, int k) { return Vec3d(i, j, k); },
+        [](int, int, int) { return 4; }, 1);
+    Run run(deck);
+    CHECK(run.simulation->tiles().energies.empty() == (failure == 0));
+  }
+}
+
 // A brick that fails as a whole leaves nodes that nothing holds: their kinetic energy is eroded.
 TEST_CASE("V28: nodes without elements carry eroded kinetic energy") {
   Deck deck;

@@ -20,7 +20,12 @@ class KernelOf : public Kernel {
   explicit KernelOf(M material) : material_(material) {}
   int corners() const override { return N; }
   bool rotations() const override { return E::rotations; }
-  bool can_fail() const override { return M::can_fail; }
+  bool can_fail() const override {
+    if constexpr (M::can_fail)
+      return material_.may_fail();
+    else
+      return false;
+  }
   int state_fields(const ElementParameters& p) const override {
     return E::template state_fields<M>(p);
   }
@@ -43,6 +48,8 @@ class KernelOf : public Kernel {
     for (int k = 0; k < block_size / W; ++k)
       internal[k] = hourglass[k] = damping[k] = L(0.0), step[k] = volume[k] = L(1e30);
     for (int b = 0; b < blocks; ++b) {
+      if (b + 1 < blocks) fetch_history(t.state + std::size_t(b + 1) * fields * block_size, fields);
+      t.ahead.fetch(b, blocks);
       alignas(64) Real force_rows[N][block_size * 4];
       alignas(64) Real moment_rows[E::rotations ? N : 1][block_size * 4];
       for (int k = 0; k < block_size / W; ++k) {
