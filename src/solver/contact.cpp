@@ -94,8 +94,7 @@ void Contacts::add_contact(const Model& model, int index, const SurfaceSource& s
   };
   ContactSurface a = source.build(contact, contact.a, false);
   if (is_single(contact.kind)) {
-    if (contact.kind == ContactKind::automatic_general)
-      edge_passes_.push_back(std::make_unique<EdgePass>(model, contact, index, a, carriers_));
+    if (edges_touch(contact)) add_edges(model, index, a, diagnostics);
     if (contact.soft == 2)
       segment_passes_.push_back(
           std::make_unique<SegmentPass>(model, contact, index, a, a, true, carriers_));
@@ -108,11 +107,28 @@ void Contacts::add_contact(const Model& model, int index, const SurfaceSource& s
         "contact " + std::to_string(contact.id) + ": the reference side has no segments",
         "Check the set or part of the reference side");
   orient(model, contact, a, b);
+  if (edges_touch(contact)) add_edges(model, index, join_edges(a, b), diagnostics);
   if (contact.soft == 2)
     segment_passes_.push_back(
         std::make_unique<SegmentPass>(model, contact, index, a, b, false, carriers_));
   add(a, b, false);
   if (is_two_way(contact.kind) && !a.segments.empty()) add(std::move(b), std::move(a), true);
+}
+
+void Contacts::add_edges(const Model& model, int index, ContactSurface surface,
+                         Diagnostics& diagnostics) {
+  const Contact& contact = model.contacts[index];
+  if (contact.kind != ContactKind::automatic_general && surface.unused_edges > 0)
+    diagnostics.warning(
+        "contact-edges", contact.where, "CONTACT", "depth",
+        "contact " + std::to_string(contact.id) + ": DEPTH = " + std::to_string(contact.depth) +
+            " asks for edges against edges; free edges of shells touch each other, but " +
+            std::to_string(surface.unused_edges) +
+            " others do not (folds and branches of shells, edges of solids, shells without "
+            "thickness)",
+        "Surfaces and nodes still touch there; look at the run where two such edges may cross");
+  edge_passes_.push_back(
+      std::make_unique<EdgePass>(model, contact, index, std::move(surface), carriers_));
 }
 
 void Contacts::add_transducer(const Model& model, int index, const SurfaceSource& source) {
@@ -204,6 +220,13 @@ std::vector<Contacts::Resultant> Contacts::resultants() const {
   }
   for (const auto& pass : edge_passes_) {
     Resultant& r = list[pass->contact_index()];
+    if (r.mass_b != 0)
+      for (const EdgeForce& f : pass->active_forces()) {
+        // the first edge lies on side a unless the second lies there alone
+        const bool swapped = pass->surface().edges[f.second].side == 0;
+        const Vec3d total = swapped ? -(f.normal + f.friction) : f.normal + f.friction;
+        r.side_a += total, r.side_b -= total;
+      }
     r.energy_a += 0.5 * pass->energy(), r.energy_b += 0.5 * pass->energy();
     r.friction_energy += pass->friction_energy();
   }

@@ -81,6 +81,7 @@ class Contacts {
  private:
   void add_contact(const Model& model, int contact, const SurfaceSource& source,
                    Diagnostics& diagnostics);
+  void add_edges(const Model& model, int contact, ContactSurface surface, Diagnostics& diagnostics);
   void add_transducer(const Model& model, int contact, const SurfaceSource& source);
   void add_to_transducers(std::vector<Resultant>& resultants) const;
   void complete_report();
@@ -95,7 +96,7 @@ class Contacts {
   std::unique_ptr<TiedNodes> tied_;
   std::vector<std::unique_ptr<ContactPass>> passes_;
   std::vector<char> second_pass_;                             // tracked side is b
-  std::vector<std::unique_ptr<EdgePass>> edge_passes_;        // AUTOMATIC_GENERAL
+  std::vector<std::unique_ptr<EdgePass>> edge_passes_;        // where edges_touch()
   std::vector<std::unique_ptr<SegmentPass>> segment_passes_;  // SOFT=2
   std::vector<Transducer> transducers_;
   std::vector<Resultant> fixed_;  // masses

@@ -1,4 +1,5 @@
-// Edges against edges: beams and free edges of shells in *CONTACT_AUTOMATIC_GENERAL.
+// Edges against edges: beams and free edges of shells in *CONTACT_AUTOMATIC_GENERAL, and the latter
+// with SOFT=2.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -108,6 +109,114 @@ TEST_CASE("free edges of crossed upright plates meet; the friction of edges is l
   CHECK(rig.state.nodes[upper[0]].v.z > 0.009);  // it came back
   CHECK(ratio == doctest::Approx(0.3).epsilon(1e-3));
   CHECK(rig.state.energy.contact_friction > 0);
+}
+
+namespace {
+
+// upright plates whose edges cross in the middle of elements, no node near the other plate; the
+// upper one falls
+struct CrossedPlates : Rig {
+  int a, b;
+  std::vector<int> lower, upper;
+  CrossedPlates() {
+    a = add_part(), b = add_part();
+    lower = add_plate(a, {0, 0, 0}, {4, 0, 0}, {0, 0, 2}, 4, 2, 0.2);
+    upper = add_plate(b, {1.7, -1.3, 2.25}, {0, 3, 0}, {0, 0, 2}, 3, 2, 0.2);
+  }
+  void fall(int steps) {
+    start(0.02);
+    for (int n : upper) state.nodes[n].v = {0, 0, -0.01};
+    Team team(1);
+    for (int i = 0; i < steps; ++i) step(team, 0.02, {upper});
+  }
+};
+
+}  // namespace
+
+// Rims catch the plate where DEPTH asks for edges, and it comes back as fast as it came; without
+// edges nothing is in its way.
+TEST_CASE("SOFT=2: edges touch edges with a DEPTH that ends in 5, and only then") {
+  for (const bool two_surfaces : {false, true})
+    for (const int depth : {2, 5, 13, 25, 35}) {
+      CrossedPlates rig;
+      Contact& c =
+          two_surfaces
+              ? rig.add_contact(ContactKind::automatic_surface_to_surface, {rig.a}, {rig.b})
+              : rig.add_contact(ContactKind::automatic_single_surface, {rig.a, rig.b});
+      c.soft = 2, c.depth = depth;
+      rig.fall(1500);
+      CAPTURE(depth);
+      const double v = rig.state.nodes[rig.upper[0]].v.z;
+      CHECK(v == doctest::Approx(depth % 10 == 5 ? 0.01 : -0.01).epsilon(0.0025));
+      // free edges alone: nothing is left out
+      CHECK(rig.diagnostics.list().empty());
+    }
+}
+
+TEST_CASE("SOFT=2 with edges between two surfaces: their force is that of the sides") {
+  for (const bool turned : {false, true}) {
+    CrossedPlates rig;
+    Contact& c = rig.add_contact(ContactKind::automatic_surface_to_surface,
+                                 {turned ? rig.b : rig.a}, {turned ? rig.a : rig.b});
+    c.soft = 2, c.depth = 5;
+    rig.start(0.02);
+    for (int n : rig.upper) rig.state.nodes[n].v = {0, 0, -0.01};
+    Team team(1);
+    double largest = 0;
+    for (int i = 0; i < 600; ++i) {
+      rig.step(team, 0.02, {rig.upper});
+      Vec3d f{0, 0, 0};
+      for (int n : rig.upper) f += rig.state.force[n];
+      const Contacts::Resultant r = rig.contacts->resultants()[0];
+      const Vec3d on_upper = turned ? r.side_a : r.side_b, on_lower = turned ? r.side_b : r.side_a;
+      CHECK(norm(on_upper - f) < 1e-10);
+      CHECK(norm(on_upper + on_lower) == 0);
+      largest = std::max(largest, f.z);
+    }
+    CHECK(largest > 0);
+  }
+}
+
+// A part that stands on both sides of a contact: each pair of edges once, as in a single surface.
+TEST_CASE("SOFT=2 with edges between surfaces that share parts pushes every pair once") {
+  double force[2] = {0, 0};
+  for (const bool two_surfaces : {false, true}) {
+    CrossedPlates rig;
+    const std::vector<int> both{rig.a, rig.b};
+    Contact& c = two_surfaces
+                     ? rig.add_contact(ContactKind::automatic_surface_to_surface, both, both)
+                     : rig.add_contact(ContactKind::automatic_single_surface, both);
+    c.soft = 2, c.depth = 5;
+    rig.start(0.02);
+    Team team(1);
+    rig.contacts->forces(rig.model, rig.state, team);
+    rig.state.interaction.clear();
+    for (int n : rig.upper) rig.state.nodes[n].x.z -= 0.06;
+    rig.contacts->forces(rig.model, rig.state, team);
+    for (int n : rig.upper) force[two_surfaces] += rig.state.interaction.get(n).z;
+  }
+  CHECK(force[0] > 0);
+  CHECK(force[1] == doctest::Approx(force[0]).epsilon(1e-12));
+}
+
+TEST_CASE("SOFT=2: edges that DEPTH asks for and that do not touch are named") {
+  for (const int depth : {2, 5}) {
+    Rig rig;
+    const int a = rig.add_part();
+    rig.add_brick(a, {0, 0, 0}, {1, 1, 1}, 2);
+    Contact& c = rig.add_contact(ContactKind::automatic_single_surface, {a});
+    c.soft = 2, c.depth = depth, c.where = Location{0, 12};
+    rig.start(0.02);
+    // twelve edges of a cube, two elements along each
+    const bool said = !rig.diagnostics.list().empty();
+    CHECK(said == (depth == 5));
+    if (!said) continue;
+    const Diagnostic& d = rig.diagnostics.list()[0];
+    CHECK(d.name == "contact-edges");
+    CHECK(d.field == "depth");
+    CHECK(d.where.line == 12);
+    CHECK(d.message.find(" 24 others") != std::string::npos);
+  }
 }
 
 TEST_CASE("edges: same bits after save and load") {

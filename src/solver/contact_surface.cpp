@@ -285,14 +285,66 @@ void SurfaceSource::add_shell_edges(ContactSurface& s) const {
   for (int g = 0; g < int(s.segments.size()); ++g) {
     const ContactSegment& segment = s.segments[g];
     const int corners = segment.triangle ? 3 : 4;
-    for (int i = 0; i < corners && segment.shell; ++i)
-      if (segment.free_features >> i & 1)
-        s.edges.push_back({{segment.node[i], segment.node[(i + 1) % corners]},
-                           segment.part,
-                           segment.body,
-                           g,
-                           segment.half_thickness});
+    for (int i = 0; i < corners && segment.shell; ++i) {
+      if (!(segment.free_features >> i & 1)) continue;
+      s.edges.push_back({{segment.node[i], segment.node[(i + 1) % corners]},
+                         segment.part,
+                         segment.body,
+                         g,
+                         segment.half_thickness});
+      s.unused_edges += segment.half_thickness == 0;
+    }
   }
+  s.unused_edges += sharp_edges(s);
+}
+
+// edges inside the surface at which it turns by more than 60 degrees, or more than two segments
+// meet
+int SurfaceSource::sharp_edges(const ContactSurface& s) const {
+  // of each segment around an edge: into it, square to the edge
+  std::map<std::pair<int, int>, std::vector<Vec3d>> inwards;
+  for (const ContactSegment& g : s.segments) {
+    const int corners = g.triangle ? 3 : 4;
+    Vec3d centre{0, 0, 0};
+    for (int i = 0; i < corners; ++i) centre += (1.0 / corners) * model_.nodes.x[g.node[i]];
+    for (int i = 0; i < corners; ++i) {
+      const int a = g.node[i], b = g.node[(i + 1) % corners];
+      const Vec3d &x = model_.nodes.x[a], along = model_.nodes.x[b] - x, to = centre - x;
+      const double length = dot(along, along);
+      if (length > 0) inwards[std::minmax(a, b)].push_back(to - (dot(to, along) / length) * along);
+    }
+  }
+  int count = 0;
+  for (const auto& [edge, t] : inwards)
+    count += t.size() > 2 || (t.size() == 2 && dot(t[0], t[1]) > -0.5 * norm(t[0]) * norm(t[1]));
+  return count;
+}
+
+bool edges_touch(const Contact& contact) {
+  return contact.kind == ContactKind::automatic_general ||
+         (contact.soft == 2 && contact.depth % 10 == 5);
+}
+
+ContactSurface join_edges(const ContactSurface& a, const ContactSurface& b) {
+  ContactSurface s = a;
+  std::map<std::pair<int, int>, std::size_t> known;
+  for (std::size_t e = 0; e < s.edges.size(); ++e) {
+    ContactEdge& edge = s.edges[e];
+    edge.side = 0, known[std::minmax(edge.node[0], edge.node[1])] = e;
+  }
+  for (ContactEdge edge : b.edges) {
+    const auto twin = known.find(std::minmax(edge.node[0], edge.node[1]));
+    if (twin != known.end()) {
+      s.edges[twin->second].side = -1;
+      continue;
+    }
+    edge.side = 1;
+    if (edge.segment >= 0) edge.segment += int(a.segments.size());
+    s.edges.push_back(edge);
+  }
+  s.segments.insert(s.segments.end(), b.segments.begin(), b.segments.end());
+  s.unused_edges += b.unused_edges;
+  return s;
 }
 
 void SurfaceSource::add_set_nodes(const NodeSet& set, ContactSurface& s) const {
@@ -399,7 +451,7 @@ ContactSurface SurfaceSource::build(const Contact& contact, const ContactSide& s
                   [&](const ContactEdge& e) { return outside(e.node[0]) || outside(e.node[1]); });
   }
   collect_nodes(contact, s);
-  if (contact.kind == ContactKind::automatic_general) add_shell_edges(s);
+  if (edges_touch(contact)) add_shell_edges(s);
   return s;
 }
 

@@ -50,11 +50,13 @@ struct ContactEdge {
   int body = -1;     // rigid body it belongs to, or -1
   int segment = -1;  // of the surface, whose edge it is
   double radius = 0;
+  int side = -1;  // of a contact between two surfaces: 0 or 1; -1: both, or there is one surface
 };
 
 struct ContactSurface {
   std::vector<ContactSegment> segments;
-  std::vector<ContactEdge> edges;  // of AUTOMATIC_GENERAL only
+  std::vector<ContactEdge> edges;  // where edges touch edges
+  int unused_edges = 0;  // rims without thickness, folds and edges of solids, of such contacts
   std::vector<ContactNode> nodes;  // ascending node index
 };
 
@@ -86,6 +88,7 @@ class SurfaceSource {
   double beam_radius(int beam) const;
   void add_beam_edges(const ContactSide& side, ContactSurface& s) const;
   void add_shell_edges(ContactSurface& s) const;
+  int sharp_edges(const ContactSurface& s) const;
   void add_beam_nodes(const ContactSide& side, ContactSurface& s) const;
   void add_set_nodes(const NodeSet& set, ContactSurface& s) const;
   double density(int part) const;
@@ -98,6 +101,11 @@ class SurfaceSource {
   std::vector<Face> faces_;  // ascending key
   std::vector<int> node_body_;
 };
+
+// AUTOMATIC_GENERAL, and SOFT=2 with a DEPTH that ends in 5
+bool edges_touch(const Contact& contact);
+// Both surfaces as one, with edges that know their side.
+ContactSurface join_edges(const ContactSurface& a, const ContactSurface& b);
 
 // automatic kinds use shell thickness; the old kinds only with SHLTHK
 bool uses_thickness(const Model& model, const Contact& contact);

@@ -53,6 +53,7 @@ EdgePass::EdgePass(const Model& model, const Contact& contact, int contact_index
 bool EdgePass::wanted(int first, int second) const {
   const ContactEdge &a = surface_.edges[first], &b = surface_.edges[second];
   if (first >= second || share_node(a, b) || (a.body >= 0 && a.body == b.body)) return false;
+  if (a.side >= 0 && a.side == b.side) return false;
   if (carriers_.empty()) return true;
   auto tied = [&](const ContactEdge& from, const ContactEdge& to) {
     for (int n : from.node)

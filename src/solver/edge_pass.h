@@ -1,6 +1,7 @@
 #pragma once
-// Edges against edges (*CONTACT_AUTOMATIC_GENERAL): beams as round bars of the radius sqrt(A/pi),
-// free edges of shells as round rims of half the thickness.
+// Edges against edges (*CONTACT_AUTOMATIC_GENERAL, and SOFT=2 with DEPTH 5, 25, 35 ...): beams, of
+// the former alone, as round bars of the radius sqrt(A/pi), free edges of shells as round rims of
+// half the thickness.
 //   d = r1 + r2 - |g|,  n = g/|g|       g: from the closest point of edge 2 to that of edge 1
 //   (contact/closest_point.h) k = 0.5 SOFSCL m*/dt_c^2            as SOFT=1; m* from the shape
 //   functions 1 - a, a of both edges
