@@ -229,23 +229,27 @@ void print_summary(const nlohmann::ordered_json& j) {
     fmt::print("{}: {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
 }
 
+// what is not supported must be allowed by the user
+bool refused(const Diagnostics& diagnostics, bool allowed) {
+  const int unsupported = diagnostics.count(Severity::unsupported);
+  if (unsupported > 0 && !allowed)
+    fmt::print(stderr,
+               "fabrica: {} unsupported keywords or fields would change the physics. `fabrica "
+               "check` lists them; "
+               "--allow-unsupported runs without them\n",
+               unsupported);
+  return unsupported > 0 && !allowed;
+}
+
 }  // namespace
 
 int run_command(const RunCommand& c) {
   Diagnostics diagnostics;
   const auto read_start = Clock::now();
   std::unique_ptr<Model> model = read_deck(c.deck, diagnostics);
-  const int unsupported = diagnostics.count(Severity::unsupported);
   print(diagnostics, Severity::warning);
   if (!model || diagnostics.has_errors()) return 1;
-  if (unsupported > 0 && !c.allow_unsupported) {
-    fmt::print(stderr,
-               "fabrica: {} unsupported keywords or fields would change the physics. `fabrica "
-               "check` lists them; "
-               "--allow-unsupported runs without them\n",
-               unsupported);
-    return 2;
-  }
+  if (refused(diagnostics, c.allow_unsupported)) return 2;
   std::filesystem::create_directories(c.out);
   const std::size_t printed = diagnostics.list().size();
   RunOptions options;
@@ -255,6 +259,7 @@ int run_command(const RunCommand& c) {
   for (std::size_t i = printed; i < diagnostics.list().size(); ++i)
     fmt::print(stderr, "{}\n", diagnostics.format(diagnostics.list()[i]));
   if (diagnostics.has_errors()) return 1;
+  if (refused(diagnostics, c.allow_unsupported)) return 2;
   if (!c.restart.empty()) simulation.load(c.restart);
   const double started_at = simulation.state().time;
   const std::int64_t first_cycle = simulation.state().cycle;

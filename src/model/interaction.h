@@ -122,11 +122,13 @@ struct SinglePointConstraint {
   int local_system = -1;
   std::array<bool, 6> fixed{};
   double birth = 0, death = 1e28;
+  Location where;
 };
 struct PrescribedMotion {
   enum class Target { nodes, rigid_body } target = Target::nodes;
   bool local = false;  // RIGID_LOCAL
   std::vector<int> nodes;
+  int rigid_nodes = 0;  // how many of them are reported as nodes of rigid bodies
   int part = -1;
   int dof = 0;   // as in the deck
   int kind = 0;  // VAD 0 velocity, 1 acceleration, 2 displacement, 3 velocity by displacement,
@@ -162,6 +164,7 @@ struct NodalLoad {
   double scale = 1;
   std::array<int, 3> follower{-1, -1, -1};
   int local_system = -1;
+  Location where;
 };
 struct PressureLoad {
   std::vector<std::array<int, 4>> segments;

@@ -185,6 +185,7 @@ class Resolver {
   void check_mass();
   void merge_touching_parts(std::vector<int>& parent);
   void check_rigid_nodes();
+  void check_motions_of_rigid_nodes();
   void check_joints();
   void check_termination();
 

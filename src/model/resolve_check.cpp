@@ -188,8 +188,33 @@ void Resolver::check_rigid_nodes() {
   };
   for (const SinglePointConstraint& c : model_.constraints)
     for (int n : c.nodes) held(n, "BOUNDARY_SPC", "held");
-  for (const PrescribedMotion& m : model_.prescribed_motions)
-    for (int n : m.nodes) held(n, "BOUNDARY_PRESCRIBED_MOTION", "driven");
+  check_motions_of_rigid_nodes();
+}
+
+// A node of a rigid body goes where its body goes.
+void Resolver::check_motions_of_rigid_nodes() {
+  std::size_t i = 0;
+  for (const auto& owned : model_.cards) {
+    const Card& card = *owned;
+    if (!card.schema || !card.schema->name.starts_with("BOUNDARY_PRESCRIBED_MOTION_") ||
+        card.schema->support != Support::full)
+      continue;
+    if (i >= model_.prescribed_motions.size()) break;
+    PrescribedMotion& m = model_.prescribed_motions[i++];
+    int count = 0, first = -1;
+    for (const int n : m.nodes)
+      if (node_to_rigid_[n] >= 0 && ++count == 1) first = n;
+    m.rigid_nodes = count;
+    if (count == 0) continue;
+    const bool part = node_to_rigid_[first] < int(model_.parts.size());
+    unsupported(card, card.has_field("nid") ? "nid" : "nsid", "motion-of-rigid-node",
+                std::to_string(count) + " of " + std::to_string(m.nodes.size()) +
+                    " nodes belong to rigid bodies, node " +
+                    std::to_string(model_.nodes.id[first]) + " first, and cannot be moved alone",
+                part ? "Move the body by *BOUNDARY_PRESCRIBED_MOTION_RIGID, and take its nodes out "
+                       "of the set"
+                     : "Take the nodes of nodal rigid bodies and welds out of the set");
+  }
 }
 
 // Odd nodes on one body, even nodes on another; the first pair in one place.

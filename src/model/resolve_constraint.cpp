@@ -128,6 +128,7 @@ void Resolver::read_joint(const Card& card) {
 
 void Resolver::read_spc(const Card& card) {
   SinglePointConstraint c;
+  c.where = card.where;
   const bool by_set = card.schema->name.ends_with("_SET");
   c.nodes = by_set ? set_or_all(card.id("nsid")) : std::vector<int>{node(card.id("nid"))};
   std::erase(c.nodes, -1);

@@ -159,6 +159,7 @@ void Resolver::read_node_load(const Card& card) {
   const std::string_view name = card.schema->name;
   for (int i = 0; i < card.row_count(); ++i) {
     NodalLoad load;
+    load.where = card.where_of_row(i);
     const auto id = to_id(card.row(i, 0));
     if (name == "LOAD_RIGID_BODY")
       load.part = part(id);

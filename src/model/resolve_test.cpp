@@ -125,6 +125,42 @@ TEST_CASE("resolve: every wrong reference has its own diagnostic") {
   }
 }
 
+TEST_CASE("resolve: a motion of nodes of a rigid body is not supported, and named by its card") {
+  for (const bool by_set : {false, true}) {
+    Cube cube;
+    Builder& b = cube.builder;
+    const std::int64_t n[8] = {11, 12, 13, 14, 15, 16, 17, 18};
+    for (int k = 0; k < 8; ++k)
+      b.add_node(n[k], {double(k % 4 == 1 || k % 4 == 2), double(k % 4 >= 2), 5 + double(k / 4)});
+    b.add_solid(2, 11, n, 8);
+    b.add_card("MAT_RIGID").set("mid", 5).set("ro", 2).set("e", 8).set("pr", 0);
+    b.add_card("PART").set("pid", 11).set("secid", 3).set("mid", 5);
+    b.add_card("DEFINE_CURVE").set("lcid", 1).add_row({0, 0}).add_row({1, 1});
+    b.add_card("SET_NODE_LIST").set("sid", 1).add_row({12, 1, 13, 0, 0, 0, 0, 0});
+    const char *keyword =
+                   by_set ? "BOUNDARY_PRESCRIBED_MOTION_SET" : "BOUNDARY_PRESCRIBED_MOTION_NODE",
+               *field = by_set ? "nsid" : "nid";
+    Card motion(keyword);
+    motion.set(field, by_set ? 1 : 14).set("dof", 1).set("vad", 0).set("lcid", 1);
+    motion.where = Location{0, 40};
+    b.add_card(std::move(motion));
+    // node 1 is on no body
+    b.add_card("BOUNDARY_PRESCRIBED_MOTION_NODE").set("nid", 1).set("dof", 2).set("lcid", 1);
+    b.finish();
+    CHECK(cube.diagnostics.count(Severity::unsupported) == 1);
+    for (const Diagnostic& d : cube.diagnostics.list()) {
+      CAPTURE(d.message);
+      REQUIRE(d.name == "motion-of-rigid-node");
+      CHECK(d.severity == Severity::unsupported);
+      CHECK(d.where.line == 40);
+      CHECK(d.keyword == keyword);
+      CHECK(d.field == field);
+      CHECK(d.message.find(by_set ? "2 of 3 nodes" : "1 of 1 nodes") == 0);
+      CHECK(d.remedy.find("BOUNDARY_PRESCRIBED_MOTION_RIGID") != std::string::npos);
+    }
+  }
+}
+
 TEST_CASE("resolve: zero means default where the format says so") {
   Cube cube;
   cube.builder.add_card("SET_PART_LIST").set("sid", 1).add_row({10, 0, 0, 0, 0, 0, 0, 0});

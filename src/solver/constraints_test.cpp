@@ -29,7 +29,7 @@ struct Run {
          extra_work = 0;  // by them up to t(n), their half steps as energies have them
   explicit Run(Mechanism& m_)
       : m(m_),
-        loads(m_.model, *m_.bodies, m_.diagnostics),
+        loads(m_.model, m_.state, *m_.bodies, m_.diagnostics),
         constraints(m_.model, m_.state, m_.diagnostics),
         walls(m_.model, m_.state, m_.diagnostics),
         damping(m_.model, *m_.bodies),
@@ -420,6 +420,84 @@ TEST_CASE("nodal loads, followers and pressures do the work they should") {
   const double body = 0.5 * std::pow(7 * m.state.time - 7 * 1e-3, 2);
   CHECK(run.last_kinetic - run.first_kinetic + body ==
         doctest::Approx(m.state.energy.external_work).epsilon(1e-9));
+}
+
+// A moment turns the body wherever it acts: I w' = M, and its work is what the body has.
+TEST_CASE("a moment on a node of a rigid body turns it, also where nothing else has rotations") {
+  for (const double spin_inertia : {0.0, 0.5}) {
+    Mechanism m;
+    const int a = m.node({1, 0, 0}), b = m.node({-1, 0, 0});
+    const int p = m.part({a, b});
+    m.inertia(p, 2, {0, 0, 0}, {3, 4, 5});
+    NodalLoad l;
+    l.nodes = {a}, l.dof = 7, l.scale = 6;
+    m.model.nodal_loads.push_back(l);
+    m.start({}, spin_inertia);
+    if (spin_inertia > 0) m.state.interaction_moment.resize(2, FixedScale::of(1e3));
+    Run run(m);
+    CHECK(m.diagnostics.list().empty());
+    for (int i = 0; i < 400; ++i) {
+      if (spin_inertia > 0) m.state.moment[a] = {0, 0, 6}, m.state.moment[b] = {};
+      run.step(1e-3);
+    }
+    // the first step is half a step
+    const double w = (6 / 5.0) * (m.state.time - 0.5e-3);
+    CHECK((*m.bodies)[0].motion.w.z == doctest::Approx(w).epsilon(1e-9));
+    if (spin_inertia > 0) continue;
+    // kinetic energy at t(n): 1/2 w- . I w+; at the start w- = -w+
+    const double before = w - 1e-3 * 6 / 5.0, first = 0.5e-3 * 6 / 5.0;
+    CHECK(m.state.energy.external_work ==
+          doctest::Approx(0.5 * 5 * (before * w + first * first)).epsilon(1e-9));
+  }
+}
+
+// What acts on nodes and cannot be: each named by its card, with the nodes counted.
+TEST_CASE("conditions and loads that nodes cannot follow are not supported") {
+  Mechanism m;
+  const int a = m.node({0, 0, 0}), b = m.node({1, 0, 0}), c = m.node({2, 0, 0}),
+            d = m.node({3, 0, 0}), e = m.node({4, 0, 0});
+  m.part({d, e});
+  const int curve = m.curve({0, 1}, {1, 1});
+  const auto motion = [&](std::vector<int> nodes, int dof, int line) {
+    PrescribedMotion p;
+    p.nodes = std::move(nodes), p.dof = dof, p.curve = curve, p.where = Location{0, line};
+    p.direction = {0, 0, 1};
+    m.model.prescribed_motions.push_back(p);
+  };
+  motion({a, d, e}, -4, 10);  // three conditions a node
+  motion({a, b}, 1, 20);
+  motion({a, c}, 6, 30);
+  motion({a}, 2, 40);
+  SinglePointConstraint s;
+  s.nodes = {a}, s.fixed = {true, true, true}, s.where = Location{0, 50};
+  m.model.constraints.push_back(s);
+  s.nodes = {b, c}, s.fixed = {false, false, true}, s.where = Location{0, 60};
+  m.model.constraints.push_back(s);
+  NodalLoad l;
+  l.nodes = {d, a, c}, l.dof = 5, l.where = Location{0, 70};
+  m.model.nodal_loads.push_back(l);
+  m.start();
+  m.state.owner[b] = NodeOwner::tied;
+  const std::size_t before = m.diagnostics.list().size();
+  Run run(m);
+  struct Expected {
+    const char *name, *message;
+    int line;
+  };
+  const Expected expected[] = {{"moment-without-rotation", "on 2 nodes", 70},
+                               {"support-of-tied-node", "1 nodes", 60},
+                               {"motion-of-rigid-node", "2 nodes", 10},
+                               {"motion-of-tied-node", "1 nodes", 20},
+                               {"rotation-of-node-without", "2 nodes", 30}};
+  REQUIRE(m.diagnostics.list().size() == before + 5);
+  for (int i = 0; i < 5; ++i) {
+    const Diagnostic& x = m.diagnostics.list()[before + std::size_t(i)];
+    CAPTURE(x.message);
+    CHECK(x.severity == Severity::unsupported);
+    CHECK(x.name == expected[i].name);
+    CHECK(x.message.find(expected[i].message) != std::string::npos);
+    CHECK(x.where.line == expected[i].line);
+  }
 }
 
 TEST_CASE("generation gives nodes, spins and bodies one rotation") {

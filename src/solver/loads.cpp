@@ -29,7 +29,8 @@ std::vector<unsigned char> nodes_of_parts(const Model& model, const std::vector<
 
 }  // namespace
 
-Loads::Loads(const Model& model, const RigidBodies& bodies, Diagnostics& diagnostics)
+Loads::Loads(const Model& model, const State& state, const RigidBodies& bodies,
+             Diagnostics& diagnostics)
     : model_(model) {
   for (const BodyLoad& b : model.body_loads) {
     Gravity g;
@@ -53,10 +54,28 @@ Loads::Loads(const Model& model, const RigidBodies& bodies, Diagnostics& diagnos
           "unsupported-load", {}, "LOAD_NODE", "DOF",
           "DOF " + std::to_string(l.dof) + " is not supported or lacks its three nodes",
           "use 1-3, 5-7, or 4 and 8 with M1, M2, M3");
+    check_moment(l, state, bodies, diagnostics);
     last_nodal_.emplace_back(l.part >= 0 ? 1 : l.nodes.size(), Vec3d{});
   }
   for (const PressureLoad& p : model.pressure_loads)
     last_pressure_.emplace_back(p.segments.size(), Vec3d{});
+}
+
+// a moment turns bodies and nodes with an inertia, and nothing else
+void Loads::check_moment(const NodalLoad& load, const State& state, const RigidBodies& bodies,
+                         Diagnostics& diagnostics) const {
+  if (load.dof <= 4) return;
+  const auto turns = [&](int n) {
+    return bodies.body_of_node(n) >= 0 || (!state.spins.empty() && state.spins[n].inertia > 0);
+  };
+  const auto idle = std::find_if_not(load.nodes.begin(), load.nodes.end(), turns);
+  if (idle == load.nodes.end()) return;
+  const auto count = std::count_if(idle, load.nodes.end(), [&](int n) { return !turns(n); });
+  diagnostics.add({Severity::unsupported, "moment-without-rotation", load.where, "LOAD_NODE", "dof",
+                   "the moment acts on " + std::to_string(count) +
+                       " nodes that have no rotation, node " +
+                       std::to_string(model_.nodes.id[*idle]) + " first",
+                   "Apply it as a couple of forces, or to a rigid body"});
 }
 
 double Loads::value(int curve, double scale, double time) const {
@@ -92,9 +111,17 @@ void Loads::forces(State& state, RigidBodies& bodies) {
       last_nodal_[i][0] = f;
       continue;
     }
-    if (moment && state.spins.empty()) continue;
     for (std::size_t k = 0; k < l.nodes.size(); ++k) {
       const int n = l.nodes[k];
+      // where no element has rotations, those of bodies are with the bodies alone
+      if (moment && state.spins.empty()) {
+        const int b = bodies.body_of_node(n);
+        if (b < 0) continue;
+        bodies.add_force(b, Vec3d{}, f);
+        work += dot(last_nodal_[i][k] + f, bodies[b].motion.w);
+        last_nodal_[i][k] = f;
+        continue;
+      }
       (moment ? state.interaction_moment : state.interaction).add(std::size_t(n), f);
       work += dot(last_nodal_[i][k] + f, moment ? state.spins[n].w : state.nodes[n].v);
       last_nodal_[i][k] = f;

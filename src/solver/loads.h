@@ -16,7 +16,8 @@ namespace fabrica {
 
 class Loads {
  public:
-  Loads(const Model& model, const RigidBodies& bodies, Diagnostics& diagnostics);
+  Loads(const Model& model, const State& state, const RigidBodies& bodies,
+        Diagnostics& diagnostics);
   // Nodal loads and pressures at state.time into state.interaction (and _moment), loads of rigid
   // bodies into the bodies; before assembly. state.nodes hold v(n-1/2).
   void forces(State& state, RigidBodies& bodies);
@@ -36,6 +37,8 @@ class Loads {
     std::vector<int> bodies;
     double last = 0;
   };
+  void check_moment(const NodalLoad& load, const State& state, const RigidBodies& bodies,
+                    Diagnostics& diagnostics) const;
   double value(int curve, double scale, double time) const;
   Vec3d nodal_direction(const NodalLoad& load, const State& state) const;
 

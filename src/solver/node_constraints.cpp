@@ -40,26 +40,69 @@ NodeConstraints::NodeConstraints(const Model& model, const State& state, Diagnos
   }
 }
 
+namespace {
+
+// nodes on which a condition has no effect
+struct Idle {
+  int count = 0, first = -1, last = -1;
+  void add(int node) {
+    if (node == last) return;  // another direction of the same
+    if (count++ == 0) first = node;
+    last = node;
+  }
+};
+
+}  // namespace
+
 // Supports of nodes of rigid bodies are the body's business (rigid_bodies.h).
 void NodeConstraints::leave_out_dependent(const State& state, Diagnostics& diagnostics) {
-  int tied = 0, motions = 0;
+  Idle held;
+  std::vector<Idle> of_body(model_.prescribed_motions.size()), of_tie = of_body, still = of_body;
   std::erase_if(conditions_, [&](const Condition& c) {
     const NodeOwner owner = state.owner[c.node];
-    if (owner == NodeOwner::rigid)
-      motions += c.motion >= 0;
-    else if (owner != NodeOwner::free)
-      ++tied;
+    const bool turns = !state.spins.empty() && state.spins[c.node].inertia > 0;
+    if (c.motion < 0) {
+      if (owner == NodeOwner::tied && (!c.rotation || turns)) held.add(c.node);
+    } else if (owner != NodeOwner::free) {
+      (owner == NodeOwner::rigid ? of_body : of_tie)[c.motion].add(c.node);
+    } else if (c.rotation && !turns) {
+      still[c.motion].add(c.node);
+    }
     return owner != NodeOwner::free || (c.rotation && state.spins.empty());
   });
-  if (tied > 0)
-    diagnostics.warning("constraint-on-dependent-node", {}, "BOUNDARY_SPC", "NID",
-                        std::to_string(tied) + " conditions act on tied nodes and are ignored",
-                        "constrain what they are tied to");
-  if (motions > 0)
-    diagnostics.warning("constraint-on-dependent-node", {}, "BOUNDARY_PRESCRIBED_MOTION", "NID",
-                        std::to_string(motions) +
-                            " prescribed motions act on nodes of rigid bodies and are ignored",
-                        "use *BOUNDARY_PRESCRIBED_MOTION_RIGID");
+
+  const auto report = [&](const Idle& idle, const char* name, Location where, const char* keyword,
+                          const char* what, const char* remedy) {
+    if (idle.count > 0)
+      diagnostics.add({Severity::unsupported, name, where, keyword, "nid",
+                       std::to_string(idle.count) + " nodes " + what + ", node " +
+                           std::to_string(model_.nodes.id[idle.first]) + " first",
+                       remedy});
+  };
+  Location where;
+  for (const SinglePointConstraint& c : model_.constraints)
+    if (std::find(c.nodes.begin(), c.nodes.end(), held.first) != c.nodes.end()) {
+      where = c.where;
+      break;
+    }
+  report(held, "support-of-tied-node", where, "BOUNDARY_SPC",
+         "are tied by a contact and cannot be held as well",
+         "Hold what they are tied to, or take them out of the tied side");
+  constexpr const char* motion = "BOUNDARY_PRESCRIBED_MOTION";
+  for (std::size_t i = 0; i < of_body.size(); ++i) {
+    const Location at = model_.prescribed_motions[i].where;
+    // all but those that the deck names, which are known: nodes that ties put on a body
+    if (of_body[i].count > model_.prescribed_motions[i].rigid_nodes)
+      report(of_body[i], "motion-of-rigid-node", at, motion,
+             "belong to rigid bodies and cannot be moved alone",
+             "Move the body by *BOUNDARY_PRESCRIBED_MOTION_RIGID");
+    report(of_tie[i], "motion-of-tied-node", at, motion,
+           "are tied by a contact and cannot be moved as well",
+           "Move what they are tied to, or take them out of the tied side");
+    report(still[i], "rotation-of-node-without", at, motion,
+           "have no rotation that could be prescribed",
+           "Move the nodes on a circle by DOF 9 to 11, or make them a rigid body");
+  }
 }
 
 void NodeConstraints::add_motions(Diagnostics& diagnostics) {
