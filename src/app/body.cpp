@@ -162,7 +162,9 @@ void add_body(CLI::App& app, BodyCommand& c) {
       ->check(CLI::ExistingFile);
   cmd->add_option("--resolution", c.resolution, "coarse, standard or fine")->capture_default_str();
   cmd->add_option("--only", c.only, "what to make: skeleton")->capture_default_str();
-  cmd->add_option("--bones", c.bones, "only these bones, as --list names them")->delimiter(',');
+  cmd->add_option("--bones", c.bones,
+                  "only these bones, as --list names them; right.femur, left.femur one of a pair")
+      ->delimiter(',');
   cmd->add_option("--trial", c.trial,
                   "what surrounds it: none, seat, drop, sternum, or FILE.toml, a rig for bones")
       ->capture_default_str();

@@ -79,21 +79,28 @@ Body build_body(const BodyOptions& options) {
             options.resolution,
             {},
             {}};
-  for (const std::string& name : options.only)
-    if (std::find(bone_names().begin(), bone_names().end(), name) == bone_names().end())
+  std::vector<BoneName> only;
+  for (const std::string& text : options.only) {
+    only.push_back(bone_named(text));
+    if (std::find(bone_names().begin(), bone_names().end(), only.back().bone) == bone_names().end())
       throw BodyError(
-          fmt::format("no bone is named '{}'; they are listed by `fabrica body --list`", name));
+          fmt::format("no bone is named '{}'; they are listed by `fabrica body --list`", text));
+  }
+  const auto wanted = [&](const std::string& name, Side side) {
+    return only.empty() || std::any_of(only.begin(), only.end(), [&](const BoneName& b) {
+             return b.bone == name &&
+                    (b.side == Side::midline || side == Side::midline || b.side == side);
+           });
+  };
   for (const std::string& name : bone_names()) {
-    if (!options.only.empty() &&
-        std::find(options.only.begin(), options.only.end(), name) == options.only.end())
-      continue;
+    if (!wanted(name, Side::midline)) continue;
     if (options.progress) options.progress(name);
     const std::string frame = frame_of_bone(name);
     const std::string carrier = frame == "talus" ? "foot" : frame;
     const BoneMesh mesh = mesh_bone({name, options.resolution, options.subject.scale_of(carrier)});
     if (is_paired(body.skeleton, name, frame)) {
-      body.bones.push_back(place(mesh, Side::right, frame, body.skeleton));
-      body.bones.push_back(place(mesh, Side::left, frame, body.skeleton));
+      for (const Side side : {Side::right, Side::left})
+        if (wanted(name, side)) body.bones.push_back(place(mesh, side, frame, body.skeleton));
     } else {
       body.bones.push_back(place(mesh, Side::midline, frame, body.skeleton));
     }

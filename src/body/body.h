@@ -17,7 +17,7 @@ struct BodyOptions {
   Posture posture = named_posture("standing");
   Resolution resolution = Resolution::coarse;
   bool joints = true;                                // false: bones alone
-  std::vector<std::string> only;                     // names of bones to make; empty: all
+  std::vector<std::string> only;                     // bones to make, see bone_named; empty: all
   std::function<void(const std::string&)> progress;  // called with the name of each bone
 };
 

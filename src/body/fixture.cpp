@@ -41,17 +41,27 @@ std::optional<double> lower_side(const RigFixture& fixture, double x, double y) 
   return {};
 }
 
-// half the thickness that contact gives each node of a bone's surface: that of its thickest shell;
-// -1 inside
-std::vector<double> contact_reach(const PlacedBone& bone, bool rigid) {
-  std::vector<double> reach(bone.nodes.size(), -1);
+// Points of the surface to which contact reaches: the faces of a bone, each at five by five places,
+// moved out by half the thickness of its shell.
+std::vector<Point> contact_surface(const PlacedBone& bone, bool rigid) {
+  constexpr int n = 4;
   const std::vector<double> shell = bone.mesh.cortex.empty() || rigid
                                         ? std::vector<double>(bone.mesh.surface.size(), 0)
                                         : shell_thickness(bone.mesh, bone.mesh.cortex);
-  for (std::size_t q = 0; q < bone.mesh.surface.size(); ++q)
-    for (const int n : bone.mesh.surface[q])
-      reach[std::size_t(n)] = std::max(reach[std::size_t(n)], shell[q] / 2);
-  return reach;
+  std::vector<Point> points;
+  for (std::size_t q = 0; q < bone.mesh.surface.size(); ++q) {
+    std::array<Point, 4> c;
+    for (std::size_t k = 0; k < 4; ++k) c[k] = bone.nodes[std::size_t(bone.mesh.surface[q][k])];
+    const Point area = cross(c[2] - c[0], c[3] - c[1]);
+    const Point out = (0.5 * shell[q] / norm(area)) * area;
+    for (int i = 0; i <= n; ++i)
+      for (int j = 0; j <= n; ++j) {
+        const double u = double(i) / n, v = double(j) / n;
+        points.push_back((1 - u) * ((1 - v) * c[0] + v * c[3]) + u * ((1 - v) * c[1] + v * c[2]) +
+                         out);
+      }
+  }
+  return points;
 }
 
 ShapeMesh mesh_of(const RigFixture& fixture) {
@@ -97,12 +107,9 @@ MountedPart add_fixture(const Rig& rig, const RigFixture& fixture, const Body& b
     for (const PartEntry& part : assembled.parts)
       if (part.bone == b) parts.push_back(part.id), rigid = rigid || part.rigid;
     const PlacedBone& bone = body.bones[std::size_t(b)];
-    const std::vector<double> reach = contact_reach(bone, rigid);
-    for (std::size_t n = 0; n < bone.nodes.size(); ++n) {
-      if (reach[n] < 0) continue;
-      const Point p = start.inverse(bone.nodes[n]);
-      if (const auto low = lower_side(fixture, p.x, p.y))
-        height = std::max(height, p.z + reach[n] - *low);
+    for (const Point& x : contact_surface(bone, rigid)) {
+      const Point p = start.inverse(x);
+      if (const auto low = lower_side(fixture, p.x, p.y)) height = std::max(height, p.z - *low);
     }
   }
   if (height == std::numeric_limits<double>::lowest())

@@ -41,6 +41,8 @@ Point in_body(const Point& direction, const PlacedBone& bone) {
 
 // the point about which a pot turns
 Point pivot_of(const RigPot& pot, const PlacedBone& bone) {
+  if (pot.pivot_at)
+    return bone.placement(bone.side == Side::left ? mirror(*pot.pivot_at) : *pot.pivot_at);
   const Point toward = in_body(pot.toward, bone);
   std::vector<Point> held;
   for (const int n : potted_nodes(pot, bone)) held.push_back(bone.nodes[std::size_t(n)]);
@@ -164,6 +166,7 @@ class Mounting {
     }
     for (const RigFixture& fixture : rig_.fixtures)
       mounted_.push_back(add_fixture(rig_, fixture, body_, assembled_, builder_, cards_));
+    if (rig_.damping > 0) builder_.add_card("DAMPING_GLOBAL").set("valdmp", rig_.damping);
     for (const char* database : {"DATABASE_SECFORC", "DATABASE_RBDOUT"})
       builder_.add_card(database).set("dt", rig_.output_every);
     return std::move(mounted_);
@@ -256,12 +259,6 @@ std::vector<int> potted_nodes(const RigPot& pot, const PlacedBone& bone) {
 }
 
 void place_specimens(const Rig& rig, Body& body) {
-  for (const PlacedBone& bone : body.bones)
-    if (rig.joined() && !rig.tests(bone))
-      throw BodyError(
-          fmt::format("{}: the specimen leaves out {}.{}, which is joined to it; add it "
-                      "to 'with'",
-                      rig.path, name_of(bone.side), bone.mesh.name));
   std::erase_if(body.bones, [&](const PlacedBone& bone) { return !rig.tests(bone); });
   for (const RigSpecimen& specimen : rig.specimens) Laying(rig, specimen, body).run();
 }

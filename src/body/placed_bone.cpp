@@ -16,6 +16,14 @@ const char* name_of(Side side) {
   return side == Side::right ? "right" : side == Side::left ? "left" : "mid";
 }
 
+BoneName bone_named(const std::string& text) {
+  for (const Side side : {Side::right, Side::left}) {
+    const std::string prefix = std::string(name_of(side)) + ".";
+    if (text.starts_with(prefix)) return {text.substr(prefix.size()), side, text};
+  }
+  return {text, Side::midline, text};
+}
+
 int find_bone(const std::vector<PlacedBone>& bones, const std::string& name, Side side) {
   for (std::size_t i = 0; i < bones.size(); ++i)
     if (bones[i].mesh.name == name && bones[i].side == side) return int(i);

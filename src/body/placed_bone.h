@@ -23,6 +23,14 @@ struct PlacedBone {
 const char* name_of(Region region);
 // "right", "left", "mid"
 const char* name_of(Side side);
+// A bone by its name, "right.rib5", "left.hip_bone", "sacrum"; without a side on the midline or, of
+// a pair, both.
+struct BoneName {
+  std::string bone;
+  Side side = Side::midline;
+  std::string text;  // as written
+};
+BoneName bone_named(const std::string& text);
 // the first index of a bone of that name and side, or -1
 int find_bone(const std::vector<PlacedBone>& bones, const std::string& name, Side side);
 // name of a part, region.side.tissue, e.g. "thorax.left.rib05.cortical" (numbers of ribs and rays

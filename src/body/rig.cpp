@@ -9,10 +9,7 @@ namespace {
 constexpr std::array<const char*, 6> dof_names{"x", "y", "z", "rx", "ry", "rz"};
 
 BoneName bone_name(RigTable& table, const std::string& key, const std::string& text) {
-  BoneName name{text, Side::midline, text};
-  for (const Side side : {Side::right, Side::left})
-    if (text.starts_with(std::string(name_of(side)) + "."))
-      name.side = side, name.bone = text.substr(std::string(name_of(side)).size() + 1);
+  const BoneName name = bone_named(text);
   const auto& known = bone_names();
   if (std::find(known.begin(), known.end(), name.bone) == known.end())
     table.fail(key, fmt::format("'{}' is no bone; write right.rib5 or sacrum, with a name that "
@@ -118,6 +115,9 @@ RigPot read_pot(RigTable table) {
   if (pot.pivot && *pot.pivot > pot.depth)
     table.fail("pivot", fmt::format("is {:g} mm behind the open face, but the pot is {:g} mm deep",
                                     *pot.pivot, pot.depth));
+  pot.pivot_at = table.point("pivot_at");
+  if (pot.pivot && pot.pivot_at)
+    table.fail("pivot_at", "and pivot say where the pivot is; take one out");
   pot.mass = table.number("mass", 0);
   if (pot.mass < 0) table.fail("mass", "is below 0; give that of the cup in kg");
   pot.support = read_support(table);
@@ -236,8 +236,8 @@ std::vector<std::string> Rig::bones() const {
   std::vector<std::string> names;
   for (const RigSpecimen& specimen : specimens)
     for (const BoneName& bone : specimen.bones())
-      if (std::find(names.begin(), names.end(), bone.bone) == names.end())
-        names.push_back(bone.bone);
+      if (std::find(names.begin(), names.end(), bone.text) == names.end())
+        names.push_back(bone.text);
   return names;
 }
 
@@ -264,6 +264,8 @@ Rig read_rig(const std::string& path) {
     rig.end_time = table.positive("end_time", "the time that the test runs in ms");
     rig.output_every = table.number("output_every", rig.output_every);
     rig.states_every = table.number("states_every", rig.end_time / 20);
+    rig.damping = table.number("damping", 0);
+    if (rig.damping < 0) table.fail("damping", "is below 0; give a rate in 1/ms");
     for (const RigTable& pot : table.tables("pot")) rig.pots.push_back(read_pot(pot));
     for (const RigTable& specimen : table.tables("specimen"))
       rig.specimens.push_back(read_specimen(specimen, rig.pots));

@@ -11,13 +11,6 @@
 
 namespace fabrica::body {
 
-// "right.rib5", "left.hip_bone", "sacrum"
-struct BoneName {
-  std::string bone;
-  Side side = Side::midline;
-  std::string text;  // as written
-};
-
 // A curve over time: displacement [mm], velocity [mm/ms] or force [kN]; of rotations [rad],
 // [rad/ms], [kN mm].
 struct RigCurve {
@@ -55,14 +48,15 @@ struct RigSpecimen {
 // The end of a bone that is potted: all nodes within `depth` of the farthest node in direction
 // `toward` of the bone's frame become one rigid body. The pivot, about which it turns, is the mean
 // of these nodes or, with `pivot`, a point that far behind the open face of the pot, amid the nodes
-// there.
+// there, or `pivot_at`, a point of the bone's frame.
 struct RigPot {
   std::string name;
   std::vector<BoneName> bones;
   Point toward{0, 0, 1};
-  double depth = 0;             // [mm]
-  std::optional<double> pivot;  // [mm]
-  double mass = 0;              // [kg] of the cup, beside that of the bone in it
+  double depth = 0;               // [mm]
+  std::optional<double> pivot;    // [mm]
+  std::optional<Point> pivot_at;  // [mm] in the bone's frame, instead
+  double mass = 0;                // [kg] of the cup, beside that of the bone in it
   RigSupport support;
 };
 
@@ -101,13 +95,14 @@ struct Rig {
   double end_time = 0;        // [ms]
   double output_every = 0.1;  // [ms] of histories
   double states_every = 0;    // [ms] of the animation; 0: a twentieth of the end time
+  double damping = 0;         // [1/ms] of all motion
   std::vector<RigSpecimen> specimens;
   std::vector<RigPot> pots;
   std::vector<RigFixture> fixtures;
 
   // are bones joined in it?
   bool joined() const;
-  // names of the bones to make, each once
+  // the bones to make, each once, as BodyOptions::only takes them
   std::vector<std::string> bones() const;
   // is this bone part of the rig?
   bool tests(const PlacedBone& bone) const;

@@ -89,13 +89,14 @@ const std::vector<std::string>& statistic_names() {
 }
 
 double failure_load(const std::vector<double>& y) {
-  double peak = 0, largest = 0;
+  double peak = 0, largest = 0;  // largest: with its sign
   for (const double v : y) peak = std::max(peak, std::abs(v));
   for (const double v : y) {
-    largest = std::max(largest, std::abs(v));
-    if (largest >= 0.5 * peak && std::abs(v) <= 0.7 * largest) break;
+    const bool loaded = std::abs(largest) >= 0.5 * peak;
+    if (loaded && v * largest <= 0.7 * largest * largest) break;
+    if (std::abs(v) > std::abs(largest)) largest = v;
   }
-  return largest;
+  return std::abs(largest);
 }
 
 double statistic(const CheckSpec& c, Channels& channels) {

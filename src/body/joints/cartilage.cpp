@@ -292,6 +292,8 @@ void ArticulationMaker::symphysis(const Articulation& joint, const Patch& a) {
   builder.piece.region = bone(joint.a).region;
   builder.piece.kind = PieceKind::brick;
   builder.piece.law = joint_law("symphysis");
+  // pubic bones shift on it: one-point bricks would give way in modes that strain nothing
+  builder.piece.formulation = -1;
   builder.piece.bone_a = part_name(bone(joint.a), "");
   builder.piece.bone_b = part_name(bone(joint.b), "");
   builder.piece.source = joint.source;
