@@ -172,6 +172,7 @@ class Resolver {
   void read_control(const Card& card);
   void read_selective_mass(const Card& card);
   void read_timestep(const Card& card);
+  void check_erosion(const Card& card);
   void read_control_contact(const Card& card);
   void read_database(const Card& card);
   void read_history(const Card& card);

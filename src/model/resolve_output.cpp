@@ -12,6 +12,7 @@ void Resolver::read_control(const Card& card) {
     c.end_time = card.real("endtim");
     c.end_cycle = card.integer("endcyc");
     c.minimum_time_step_factor = card.real("dtmin");
+    check_erosion(card);
   } else if (name == "CONTROL_TIMESTEP") {
     read_timestep(card);
   } else if (name == "CONTROL_HOURGLASS") {
@@ -44,6 +45,16 @@ void Resolver::read_timestep(const Card& card) {
   c.mass_scaling_first_cycle_only = card.integer("ms1st") == 1;
   c.time_step_curve = curve(card, "lctm");
   c.erode = card.integer("erode") != 0;
+  check_erosion(card);
+}
+
+// DTMIN stops the run where ERODE asks for the element to go; which card comes second reports it
+void Resolver::check_erosion(const Card& card) {
+  const Controls& c = model_.controls;
+  if (c.erode && c.minimum_time_step_factor > 0)
+    unsupported(card, "", "unsupported-erosion",
+                "elements below DTMIN are not removed (ERODE = 1); the run ends there",
+                "Leave DTMIN at 0, so that the run goes on, or accept that it ends");
 }
 
 // IMSCL = 1: all parts; negative: a part set, so that sets come first

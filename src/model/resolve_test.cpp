@@ -48,6 +48,23 @@ TEST_CASE("resolve: a cube becomes indices without complaint") {
   CHECK(model->controls.time_step_scale == 0.9);
 }
 
+TEST_CASE("erosion by time step is not claimed where DTMIN would ask for it, in either order") {
+  for (const bool erode : {false, true})
+    for (const bool limit : {false, true}) {
+      Cube before, after;
+      const auto step = [&](Cube& c) {
+        c.builder.add_card("CONTROL_TIMESTEP").set("erode", erode);
+      };
+      const auto end = [&](Cube& c) {
+        c.builder.add_card("CONTROL_TERMINATION").set("endtim", 1).set("dtmin", limit ? 0.1 : 0);
+      };
+      step(before), end(before), before.builder.finish();
+      end(after), step(after), after.builder.finish();
+      CHECK(before.has("unsupported-erosion") == (erode && limit));
+      CHECK(after.has("unsupported-erosion") == (erode && limit));
+    }
+}
+
 // m = rho V = 2, c = sqrt((K + 4G/3) / rho) = sqrt(E / rho) = 2 at nu = 0, dt = L / c = 1/2
 TEST_CASE("check: mass, centre, time step and kinetic energy of a cube") {
   Cube cube;

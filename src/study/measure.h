@@ -32,8 +32,8 @@ double first_reaching(const std::vector<double>& x, const std::vector<double>& y
 const std::vector<std::string>& statistic_names();
 
 // The load at which something gave way: the largest magnitude before the load first falls to 70 %
-// of it or turns round, counted from half the overall peak on, so that neither ripples at the start
-// nor what swings after the fracture counts. Without such a fall the overall peak.
+// of it or turns round, counted from a quarter of the overall peak on, so that neither ripples at
+// the start nor what swings after the fracture counts. Without such a fall the overall peak.
 double failure_load(const std::vector<double>& y);
 
 // The statistic that a check asks for, of the samples within its range, if it has one.

@@ -55,8 +55,8 @@ TEST_CASE("the load at failure is neither a ripple before it nor a swing after i
   // ripple, rise, fall to 80 %, rise, fracture, larger swing
   CHECK(failure_load({0, -0.2, 0, -3, -5, -4, -6, -1, 5, -7, 0}) == 6);
   CHECK(failure_load({0, 1, 2, 3}) == 3);       // nothing gave way
-  CHECK(failure_load({0, 4, 2.9, 9, 0}) == 9);  // at less than half the peak nothing is counted
-  CHECK(failure_load({0, -3, -5, 8, 0}) == 5);  // swings back beyond it between two samples
+  CHECK(failure_load({0, 2, 1, 9, 0}) == 9);  // at less than a quarter of the peak nothing counts
+  CHECK(failure_load({0, -3, -5, 18, 0}) == 5);  // swings back beyond it between two samples
   CHECK(failure_load({}) == 0);
 }
 
