@@ -25,7 +25,7 @@ double shell_wish(Resolution resolution) {
 }
 
 CellOptions cell_options(const BoneRecipe& recipe, double h) {
-  return {recipe.name, h, recipe.growth, recipe.euler};
+  return {recipe.name, h, recipe.growth, recipe.euler, recipe.symmetric};
 }
 
 // The cortex as a layer of bricks of the thickness that the table gives, at least `least` mm.
@@ -74,6 +74,22 @@ void clear_where_solid(BoneMesh& mesh) {
     Quad face = mesh.surface[q];
     std::sort(face.begin(), face.end());
     if (solid.count(face)) mesh.cortex[q] = 0;
+  }
+}
+
+// each quad and its mirror image get the mean of their thicknesses
+void mirror_cortex(BoneMesh& mesh) {
+  std::map<Quad, std::size_t> at;
+  const auto sorted = [](Quad q) {
+    std::sort(q.begin(), q.end());
+    return q;
+  };
+  for (std::size_t q = 0; q < mesh.surface.size(); ++q) at[sorted(mesh.surface[q])] = q;
+  const std::vector<double> before = mesh.cortex;
+  for (std::size_t q = 0; q < before.size(); ++q) {
+    Quad other = mesh.surface[q];
+    for (int& n : other) n = mesh.image[n];
+    mesh.cortex[q] = 0.5 * (before[q] + before[at.at(sorted(other))]);
   }
 }
 
@@ -139,6 +155,7 @@ Made make(const std::string& name, Resolution resolution) {
   made.mesh.name = name;
   made.mesh.resolution = resolution;
   if (!solid) made.mesh.cortex = cortex_of(made.mesh, name, shape);
+  if (recipe.symmetric) mirror_cortex(made.mesh);
   if (recipe.maker == "skull") clear_where_solid(made.mesh);
   made.report = measure(made.mesh);
   made.report.maker = solid ? "overlay with solid cortex" : recipe.maker;

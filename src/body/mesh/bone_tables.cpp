@@ -158,6 +158,7 @@ const std::vector<BoneRecipe>& bone_recipes() {
           if (r.core[level] < 1 || r.core[level] > 9)
             table.fail(row, fmt::format("the core '{}' should be like 2 or 2+", core));
         }
+      r.symmetric = table.text(row, "symmetric") == "yes";
       if (!table.text(row, "euler").empty()) r.euler = int(table.number(row, "euler"));
       list.push_back(r);
     }
@@ -191,6 +192,7 @@ BoneShape bone_shape(const std::string& name, double grid, double margin) {
                   index.volume,
                   {},
                   {}};
+  if (bone_recipe(name).symmetric) shape.field = shape.field.symmetric();
   if (index.volume > 0)
     shape.field.match_volume(index.volume, most_offset);
   else

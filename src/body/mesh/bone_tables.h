@@ -21,6 +21,7 @@ struct BoneRecipe {
   std::array<int, 3> core{};   // bricks along the side of a loft's core, by resolution
   std::array<bool, 3> ring{};  // is there a ring around the core?
   std::optional<int> euler;    // of the boundary
+  bool symmetric = false;      // a bone of the midline: made its own mirror image
   double spacing(Resolution r) const { return edge[std::size_t(r)]; }
 };
 

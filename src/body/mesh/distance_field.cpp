@@ -226,6 +226,20 @@ double DistanceField::value(const Point& p) const {
   return value(p, gradient);
 }
 
+DistanceField DistanceField::symmetric() const {
+  DistanceField field = *this;
+  const double low = origin_.y, high = low + (count_[1] - 1) * spacing_;
+  const int half = int(std::ceil(std::max(std::abs(low), std::abs(high)) / spacing_));
+  field.origin_.y = -half * spacing_;
+  field.count_[1] = 2 * half + 1;
+  field.phi_.assign(std::size_t(count_[0]) * field.count_[1] * count_[2], 0.0f);
+  field.fill([&](const Point& q) {
+    return 0.5 * (value(axes_.to_bone(q)) + value(axes_.to_bone({q.x, -q.y, q.z}))) + offset;
+  });
+  field.divide_by_gradient();
+  return field;
+}
+
 double DistanceField::value(const Point& p, Point& gradient) const {
   const Point q = axes_.to_grid(p) - origin_;
   int cell[3];

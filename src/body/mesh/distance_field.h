@@ -57,6 +57,10 @@ class DistanceField {
   // distance.
   void divide_by_gradient();
 
+  // The field of the solid and its mirror image y -> -y in between: the mean of the two distances.
+  // Its grid mirrors itself; the second axis must be y.
+  DistanceField symmetric() const;
+
   // signed distance less the outward offset, at a point of the bone frame
   double value(const Point& p) const;
   double value(const Point& p, Point& gradient) const;

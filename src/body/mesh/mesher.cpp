@@ -33,7 +33,7 @@ BoneMesh cells_of(const DistanceField& field, const CellOptions& options) {
   for (const double more : {0.0, 0.1, -0.1, 0.2, 0.3})
     for (const Point& shift : shifts) {
       const double growth = std::max(0.0, options.growth + more) * options.spacing;
-      CellGrid grid = rasterise(field, options.spacing, growth, shift);
+      CellGrid grid = rasterise(field, options.spacing, growth, shift, options.symmetric);
       if (!repair(grid)) continue;
       BoneMesh mesh = bricks_of(grid);
       const int euler = euler_number(mesh.surface);
@@ -49,6 +49,7 @@ UntangleProblem problem_of(const BoneMesh& mesh, const DistanceField& field, dou
   UntangleProblem problem;
   problem.bricks = mesh.bricks;
   problem.shells = mesh.surface;
+  problem.image = mesh.image;
   problem.spacing = spacing;
   std::vector<bool> on_surface(mesh.nodes.size(), false);
   for (const Quad& quad : mesh.surface)

@@ -14,6 +14,7 @@ struct CellOptions {
   double spacing = 4;        // [mm] of the grid
   double growth = 0;         // of the field before cells are chosen, in spacings
   std::optional<int> euler;  // that the boundary must have
+  bool symmetric = false;    // the field mirrors itself, and so shall the cells
 };
 
 // The cells of a solid: the first grid placement and growth that give the boundary the Euler number

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
 
 namespace fabrica::body {
 namespace {
@@ -47,6 +48,15 @@ int bad_around(const CellGrid& grid, const VertexTable& table, int i, int j, int
   return count;
 }
 
+// the row of cells that mirrors row j; of a grid that is not symmetric the row itself
+int image_row(const CellGrid& grid, int j) { return grid.symmetric ? grid.count[1] - 1 - j : j; }
+
+// flips a cell and its mirror image
+void flip(CellGrid& grid, int i, int j, int k) {
+  grid.inside[grid.index(i, j, k)] ^= 1;
+  if (grid.symmetric) grid.inside[grid.index(i, image_row(grid, j), k)] ^= 1;
+}
+
 // flips one of the eight cells at a bad vertex: the one that leaves fewest bad vertices and loses
 // least volume
 void flip_cheapest(CellGrid& grid, const VertexTable& table, std::vector<unsigned char>& flips,
@@ -58,12 +68,12 @@ void flip_cheapest(CellGrid& grid, const VertexTable& table, std::vector<unsigne
     if (x < 1 || y < 1 || z < 1 || x > grid.count[0] - 2 || y > grid.count[1] - 2 ||
         z > grid.count[2] - 2)
       continue;
-    const int cell = grid.index(x, y, z);
+    const int cell = grid.index(x, std::min(y, image_row(grid, y)), z);
     const int before = bad_around(grid, table, x, y, z);
-    grid.inside[cell] ^= 1;
+    flip(grid, x, y, z);
     const int after = bad_around(grid, table, x, y, z);
     const double gained = grid.inside[cell] ? grid.fraction[cell] : 1 - grid.fraction[cell];
-    grid.inside[cell] ^= 1;
+    flip(grid, x, y, z);
     // a little noise that depends on the cell alone breaks circles
     const double noise =
         0.1 * double((std::uint32_t(cell) * 2654435761u + flips[cell] * 40503u) >> 8 & 1023) / 1023;
@@ -71,15 +81,18 @@ void flip_cheapest(CellGrid& grid, const VertexTable& table, std::vector<unsigne
     if (cost < least) least = cost, best = cell;
   }
   if (best < 0) return;
-  grid.inside[best] ^= 1;
+  flip(grid, best % grid.count[0], best / grid.count[0] % grid.count[1],
+       best / (grid.count[0] * grid.count[1]));
   if (flips[best] < 255) ++flips[best];
 }
 
 bool make_manifold(CellGrid& grid, const VertexTable& table, std::vector<unsigned char>& flips) {
+  // of a symmetric grid the right half and the middle
+  const int rows = grid.symmetric ? grid.count[1] / 2 + 1 : grid.count[1];
   for (int sweep = 0; sweep < 400; ++sweep) {
     bool found = false;
     for (int k = 1; k < grid.count[2]; ++k)
-      for (int j = 1; j < grid.count[1]; ++j)
+      for (int j = 1; j < rows; ++j)
         for (int i = 1; i < grid.count[0]; ++i)
           if (bad(grid, table, i, j, k)) found = true, flip_cheapest(grid, table, flips, i, j, k);
     if (!found) return true;
@@ -142,10 +155,33 @@ bool keep_one_piece(CellGrid& grid) {
   return changed;
 }
 
+// writes each quad of the left half as the mirror image of its partner, which keeps the diagonal
+void mirror_quads(BoneMesh& mesh) {
+  const auto sorted = [](Quad q) {
+    std::sort(q.begin(), q.end());
+    return q;
+  };
+  const auto aside = [&](const Quad& q) {
+    double y = 0;
+    for (const int n : q) y += mesh.nodes[n].y;
+    return y;
+  };
+  std::map<Quad, Quad> left;
+  for (const Quad& q : mesh.surface) {
+    if (aside(q) > 0) continue;
+    const Quad other{mesh.image[q[0]], mesh.image[q[3]], mesh.image[q[2]], mesh.image[q[1]]};
+    left[sorted(other)] = other;
+  }
+  for (Quad& q : mesh.surface)
+    if (aside(q) > 0) q = left.at(sorted(q));
+}
+
 }  // namespace
 
-CellGrid rasterise(const DistanceField& field, double spacing, double growth, const Point& shift) {
+CellGrid rasterise(const DistanceField& field, double spacing, double growth, const Point& shift,
+                   bool symmetric) {
   CellGrid grid;
+  grid.symmetric = symmetric;
   grid.axes = field.axes();
   grid.spacing = spacing;
   const Box box = field.box();
@@ -154,6 +190,9 @@ CellGrid rasterise(const DistanceField& field, double spacing, double growth, co
     grid.count[a] = int(std::ceil((box.high[a] - box.low[a] + 2 * padding) / spacing)) + 1;
     const double middle = 0.5 * (box.low[a] + box.high[a]);
     grid.origin[a] = middle - 0.5 * grid.count[a] * spacing + shift[a] * spacing;
+    if (!symmetric || a != 1) continue;
+    grid.count[a] += grid.count[a] % 2;
+    grid.origin[a] = -0.5 * grid.count[a] * spacing;
   }
   grid.inside.assign(std::size_t(grid.count[0]) * grid.count[1] * grid.count[2], 0);
   grid.fraction.assign(grid.inside.size(), 0.0f);
@@ -175,6 +214,13 @@ CellGrid rasterise(const DistanceField& field, double spacing, double growth, co
           grid.fraction[cell] = float(inside) / 64;
         }
         grid.inside[cell] = grid.fraction[cell] > 0.5f;
+      }
+  if (!symmetric) return grid;
+  for (int k = 0; k < grid.count[2]; ++k)  // to the last sample
+    for (int j = grid.count[1] / 2; j < grid.count[1]; ++j)
+      for (int i = 0; i < grid.count[0]; ++i) {
+        const int cell = grid.index(i, j, k), image = grid.index(i, image_row(grid, j), k);
+        grid.fraction[cell] = grid.fraction[image], grid.inside[cell] = grid.inside[image];
       }
   return grid;
 }
@@ -215,6 +261,14 @@ BoneMesh bricks_of(const CellGrid& grid) {
       }
   mesh.brick_layer.assign(mesh.bricks.size(), 0);
   mesh.surface = boundary_quads(mesh.bricks);
+  if (!grid.symmetric) return mesh;
+  mesh.image.resize(mesh.nodes.size());
+  for (int k = 0; k <= grid.count[2]; ++k)
+    for (int j = 0; j < ny; ++j)
+      for (int i = 0; i < nx; ++i)
+        if (const int n = node[std::size_t(k * ny + j) * nx + i]; n >= 0)
+          mesh.image[n] = node[std::size_t(k * ny + ny - 1 - j) * nx + i];
+  mirror_quads(mesh);
   return mesh;
 }
 

@@ -17,19 +17,23 @@ struct CellGrid {
   std::array<int, 3> count{};
   std::vector<unsigned char> inside;
   std::vector<float> fraction;  // of the cell's samples that are inside
+  bool symmetric = false;       // about the middle of the second axis, which is y = 0
 
   int index(int i, int j, int k) const { return (k * count[1] + j) * count[0] + i; }
 };
 
-// shift: of the grid, in cells
-CellGrid rasterise(const DistanceField& field, double spacing, double growth, const Point& shift);
+// shift: of the grid, in cells. symmetric: the field is its own mirror image y -> -y, and so shall
+// the cells be: they meet in the plane y = 0, and the shift along y does not count.
+CellGrid rasterise(const DistanceField& field, double spacing, double growth, const Point& shift,
+                   bool symmetric = false);
 
 // Flips the cheapest cells until around each grid vertex the cells inside and those outside are
 // each connected through faces; keeps the largest piece and fills closed cavities. False when no
 // repair was found.
 bool repair(CellGrid& grid);
 
-// nodes and bricks of the cells inside
+// nodes and bricks of the cells inside; of a symmetric grid nodes with their images, and quads of
+// the left half that mirror those of the right one
 BoneMesh bricks_of(const CellGrid& grid);
 
 // A layer of bricks behind the whole boundary of a region of bricks (region[brick] = 1): each node

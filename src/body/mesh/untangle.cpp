@@ -6,6 +6,7 @@
 #include "base/lane_math.h"
 #include "base/pack.h"
 #include "body/mesh/minimise.h"
+#include "body/placement.h"
 
 namespace fabrica::body {
 namespace {
@@ -108,6 +109,16 @@ double least_determinant(const UntangleProblem& problem, const std::vector<Point
 
 }  // namespace
 
+void restore_symmetry(const std::vector<int>& image, std::vector<Point>& nodes) {
+  for (std::size_t n = 0; n < image.size(); ++n) {
+    const std::size_t m = std::size_t(image[n]);
+    if (m < n) continue;
+    nodes[n] = 0.5 * (nodes[n] + mirror(nodes[m]));
+    nodes[m] = mirror(nodes[n]);
+    if (m == n) nodes[n].y = 0;
+  }
+}
+
 void untangle(const UntangleProblem& problem, std::vector<Point>& nodes, double weight,
               int iterations) {
   const double least = least_determinant(problem, nodes);
@@ -116,6 +127,7 @@ void untangle(const UntangleProblem& problem, std::vector<Point>& nodes, double 
     return total_energy(problem, at, weight, eps, gradient);
   };
   minimise(energy, nodes, 0.5 * problem.spacing, iterations);
+  restore_symmetry(problem.image, nodes);
 }
 
 }  // namespace fabrica::body

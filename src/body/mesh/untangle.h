@@ -43,6 +43,9 @@ struct UntangleProblem {
   double spacing = 1;  // [mm] h of (3)
 };
 
+// Mean of each node and the mirror image of its partner: the mesh mirrors itself to the bit.
+void restore_symmetry(const std::vector<int>& image, std::vector<Point>& nodes);
+
 // one minimisation with weight w of (3); moves `nodes`
 void untangle(const UntangleProblem& problem, std::vector<Point>& nodes, double weight,
               int iterations);
