@@ -51,7 +51,7 @@ void print(Resolution resolution, const char* title) {
   for (const MeshReport& r : reports)
     fmt::print(
         "| {} | {} | {} | {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:+.1f} | {:.2f} / "
-        "{:.2f} | {} |\n",
+        "{:.2f} | {:.2f} | {:.2f} | {} |\n",
         r.name, r.maker, r.bricks, r.nodes, r.min_scaled_jacobian, r.p1_scaled_jacobian, r.min_size,
         r.min_cortex_size, r.volume / 1000, 100 * (r.volume / r.table_volume - 1), r.error_mean,
         r.error_p95, r.missing_p95, r.offset, r.euler);

@@ -6,6 +6,7 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <optional>
 
 #include "app/body_draws.h"
@@ -66,6 +67,13 @@ body::OutsideMeasures search_contacts(const Model& model, double seconds,
   outside.penetrating_nodes = r.penetrating_nodes,
   outside.largest_penetration = r.largest_penetration;
   outside.untied_nodes = int(r.untied_nodes.size());
+  std::map<std::string, double> depth;  // of the contacts of the worst nodes
+  for (const InitialPenetration& p : r.worst) {
+    double& deepest = depth[model.contacts[std::size_t(p.contact)].title];
+    deepest = std::max(deepest, p.depth);
+  }
+  for (const auto& [title, deepest] : depth)
+    outside.penetrations += fmt::format("; {} {:.2f}", title, deepest);
   return outside;
 }
 

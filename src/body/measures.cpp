@@ -233,10 +233,10 @@ std::vector<Measure> measure_body(const Body& body, const AssembledBody& assembl
            step >= step_limit || body.resolution == Resolution::fine,
            body.resolution != Resolution::fine);
   if (outside.searched) {
-    rows.add(
-        "initial penetration of contacts",
-        fmt::format("{:.2f} mm, {} nodes", outside.largest_penetration, outside.penetrating_nodes),
-        "at most 0.05 mm", outside.largest_penetration <= 0.05);
+    rows.add("initial penetration of contacts",
+             fmt::format("{:.2f} mm, {} nodes{}", outside.largest_penetration,
+                         outside.penetrating_nodes, outside.penetrations),
+             "at most 0.05 mm", outside.largest_penetration <= 0.05);
     rows.add("nodes of ties that find no surface", fmt::format("{}", outside.untied_nodes), "0",
              outside.untied_nodes == 0);
   }

@@ -14,6 +14,7 @@ namespace fabrica::body {
 struct OutsideMeasures {
   int penetrating_nodes = 0, untied_nodes = 0;
   double largest_penetration = 0;  // [mm]
+  std::string penetrations;        // contacts with the worst, each with its node and depth
   double seconds = 0;              // to make the body
   bool searched = false;           // contacts were searched
 };

@@ -70,6 +70,8 @@ double wanted_gap(const Articulation& joint) {
   const double room = 1.4;     // a bone gives way by 0.8 mm at most: half of room and contact
   if (joint.kind == ArticulationKind::joined || joint.kind == ArticulationKind::symphysis)
     return 0.05;
+  // bone on bone: contact keeps half the thickness of either cortex between the surfaces
+  if (joint.cartilage_a + joint.cartilage_b <= 0) return contact + 1.2;
   return contact + std::min(joint.cartilage_a + joint.cartilage_b, room);
 }
 

@@ -12,6 +12,7 @@
 #include "body/joints/joint_law.h"
 #include "body/joints/ligaments.h"
 #include "body/joints/piece_builder.h"
+#include "body/mesh/distance_field.h"
 #include "body/mesh/quality.h"
 
 namespace fabrica::body {
@@ -195,22 +196,29 @@ std::vector<std::array<PieceNode, 4>> ArticulationMaker::layer(const Articulatio
   return faces;
 }
 
+// Does p stand less than 0.02 mm before a face or up to 3 mm behind it? Either diagonal counts, for
+// a warped face lies between the two.
+bool behind(const Point& p, const std::array<Point, 4>& face) {
+  static constexpr int triangles[4][3] = {{0, 1, 2}, {0, 2, 3}, {0, 1, 3}, {1, 2, 3}};
+  return std::any_of(std::begin(triangles), std::end(triangles), [&](const int(&t)[3]) {
+    const Point &a = face[std::size_t(t[0])], &b = face[std::size_t(t[1])],
+                &c = face[std::size_t(t[2])];
+    const Point normal = cross(b - a, c - a), to = p - closest_on_triangle(p, a, b, c);
+    const double length = norm(normal), along = length > 0 ? dot(to, normal) / length : 0;
+    const double aside2 = dot(to, to) - along * along;
+    return length > 0 && aside2 < 1e-6 && along < 0.02 && along > -3;
+  });
+}
+
 // Takes out the faces with a corner behind the other side's faces: a contact starts without
 // penetration.
 void take_out_penetrating(std::vector<std::array<PieceNode, 4>>& faces,
                           const std::vector<std::array<PieceNode, 4>>& others) {
-  std::vector<Point> nodes;
-  std::vector<Quad> quads;
-  for (const auto& face : others) {
-    const int first = int(nodes.size());
-    for (const PieceNode& n : face) nodes.push_back(n.x);
-    quads.push_back({first, first + 1, first + 2, first + 3});
-  }
-  const BoneSurface surface(nodes, quads);
   std::erase_if(faces, [&](const std::array<PieceNode, 4>& face) {
     return std::any_of(face.begin(), face.end(), [&](const PieceNode& n) {
-      const SurfacePoint there = surface.nearest(n.x, 3);
-      return there.quad >= 0 && there.distance < 0.02;
+      return std::any_of(others.begin(), others.end(), [&](const auto& other) {
+        return behind(n.x, {other[0].x, other[1].x, other[2].x, other[3].x});
+      });
     });
   });
 }

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
+#include <set>
 
 #include "body/joints/articulation.h"
 #include "body/joints/elastic.h"
@@ -19,42 +21,108 @@ constexpr double surplus = 0.03;  // [mm] asked for beyond the gap
 constexpr double allowed = 0.02;  // [mm] of overlap that counts as none
 constexpr double wish = 0.44;     // of the scaled Jacobian, for the local stage
 
-// For each bone the index of the bone that is its mirror image, -1: none stands so.
-std::vector<int> twins_of(const std::vector<PlacedBone>& bones) {
-  std::vector<int> twins(bones.size(), -1);
-  for (std::size_t r = 0; r < bones.size(); ++r) {
-    if (bones[r].side != Side::right) continue;
-    const int l = find_bone(bones, bones[r].mesh.name, Side::left);
-    if (l < 0) continue;
-    const std::vector<Point>&right = bones[r].nodes, &left = bones[std::size_t(l)].nodes;
-    bool same = right.size() == left.size();
-    for (std::size_t n = 0; same && n < right.size(); ++n)
-      same = norm(right[n] - mirror(left[n])) < 1e-6;
-    if (same) twins[r] = l, twins[std::size_t(l)] = int(r);
+// The touches as bones stand, kept by pairs: only pairs with a bone that has moved are sought anew.
+class Touches {
+ public:
+  Touches(const std::vector<PlacedBone>& bones, const std::vector<Articulation>& joints)
+      : joints_(joints), surfaces(bones), moved_(bones.size(), 1) {}
+  void moved(int bone) {
+    surfaces.renew(bone);
+    moved_[std::size_t(bone)] = 1;
   }
-  return twins;
+  // of pairs that stand nearer than their gap somewhere
+  std::vector<Touch> list() {
+    std::vector<Touch> all;
+    std::map<std::pair<int, int>, std::vector<Touch>> now;
+    for (const NearPair& pair : surfaces.near(joints_)) {
+      std::vector<Touch>& found = now[{pair.a, pair.b}];
+      if (moved_[std::size_t(pair.a)] || moved_[std::size_t(pair.b)])
+        found = of_pair(pair);
+      else
+        found = std::move(kept_[{pair.a, pair.b}]);
+      all.insert(all.end(), found.begin(), found.end());
+    }
+    kept_ = std::move(now);
+    std::fill(moved_.begin(), moved_.end(), char(0));
+    return all;
+  }
+
+ private:
+  std::vector<Touch> of_pair(const NearPair& pair) const {
+    std::vector<Touch> found = surfaces.touches(pair, margin, reach);
+    if (std::none_of(found.begin(), found.end(), [](const Touch& t) { return t.distance < t.gap; }))
+      found.clear();
+    for (Touch& t : found) t.gap += surplus;
+    return found;
+  }
+  const std::vector<Articulation>& joints_;
+  std::map<std::pair<int, int>, std::vector<Touch>> kept_;
+
+ public:
+  Surfaces surfaces;
+
+ private:
+  std::vector<char> moved_;
+};
+
+// bones that touches name, with their mirror images
+std::vector<int> bones_of(const std::vector<Touch>& touches, const Mirror& mirrors) {
+  std::set<int> named;
+  for (const Touch& t : touches)
+    for (const int b : {t.a, t.b}) {
+      named.insert(b);
+      if (const int twin = mirrors.twin[std::size_t(b)]; twin >= 0) named.insert(twin);
+    }
+  return {named.begin(), named.end()};
 }
 
-std::vector<Touch> all_touches(const std::vector<PlacedBone>& bones,
-                               const std::vector<Articulation>& joints, Surfaces& surfaces) {
-  for (int b = 0; b < int(bones.size()); ++b) surfaces.renew(b);
-  std::vector<Touch> list;
-  for (const NearPair& pair : surfaces.near(joints)) {
-    const std::vector<Touch> found = surfaces.touches(pair, margin, reach);
-    const bool close =
-        std::any_of(found.begin(), found.end(), [](const Touch& t) { return t.distance < t.gap; });
-    if (close) list.insert(list.end(), found.begin(), found.end());
+// Touches in groups that do not move the same nodes: on one bone those nearer to each other than
+// twice the influence of a touch, with their mirror images.
+std::vector<std::vector<Touch>> groups_of(const std::vector<Touch>& touches,
+                                          const std::vector<PlacedBone>& bones,
+                                          const Mirror& mirrors) {
+  struct Spot {
+    Point place;
+    int touch;
+  };
+  std::map<int, std::vector<Spot>> on_bone;  // right or midline bone -> spots, right side
+  for (std::size_t k = 0; k < touches.size(); ++k)
+    for (const auto& [b, n] :
+         {std::pair{touches[k].a, touches[k].node}, std::pair{touches[k].b, touches[k].quad[0]}}) {
+      Point p = bones[std::size_t(b)].nodes[std::size_t(n)];
+      const int twin = mirrors.twin[std::size_t(b)];
+      const bool left = twin >= 0 && bones[std::size_t(b)].side == Side::left;
+      if (left || (mirrors.own[std::size_t(b)] && p.y > 0)) p = mirror(p);
+      on_bone[left ? twin : b].push_back({p, int(k)});
+    }
+  std::vector<int> root(touches.size());
+  std::iota(root.begin(), root.end(), 0);
+  const auto find = [&](int i) {
+    while (root[std::size_t(i)] != i)
+      i = root[std::size_t(i)] = root[std::size_t(root[std::size_t(i)])];
+    return i;
+  };
+  for (const auto& [bone, spots] : on_bone) {
+    const double near = mirrors.own[std::size_t(bone)] ? 1e30 : 2 * ElasticBones::influence;
+    for (std::size_t i = 0; i < spots.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        if (norm(spots[i].place - spots[j].place) < near)
+          root[std::size_t(find(spots[i].touch))] = find(spots[j].touch);
   }
-  for (Touch& t : list) t.gap += surplus;
+  std::map<int, std::vector<Touch>> groups;
+  for (std::size_t k = 0; k < touches.size(); ++k) groups[find(int(k))].push_back(touches[k]);
+  std::vector<std::vector<Touch>> list;
+  for (auto& [first, group] : groups) list.push_back(std::move(group));
   return list;
 }
 
 // The local stage for one bone: its worst bricks and shells, surfaces kept where they are, other
 // bones at their distance.
-void polish_bone(PlacedBone& bone, int index, const std::vector<Touch>& touches,
+void polish_bone(PlacedBone& bone, int index, bool own, const std::vector<Touch>& touches,
                  const std::vector<PlacedBone>& bones, const BoneSurface& surface) {
   UntangleProblem problem;
   problem.bricks = bone.mesh.bricks;
+  if (own) problem.image = bone.mesh.image;
   problem.spacing = 0;
   for (const Brick& brick : bone.mesh.bricks)
     for (float l : edge_lengths(corners_of(bone.nodes, brick)))
@@ -82,18 +150,17 @@ void polish_bone(PlacedBone& bone, int index, const std::vector<Touch>& touches,
 }
 
 void polish_all(std::vector<PlacedBone>& bones, const std::vector<Touch>& touches,
-                const std::vector<int>& twins, Surfaces& surfaces) {
-  std::vector<char> touched(bones.size(), 0);
-  for (const Touch& t : touches) touched[std::size_t(t.a)] = touched[std::size_t(t.b)] = 1;
-  for (int b = 0; b < int(bones.size()); ++b) {
+                const Mirror& mirrors, Touches& search) {
+  for (const int b : bones_of(touches, mirrors)) {
     PlacedBone& bone = bones[std::size_t(b)];
-    const int twin = twins[std::size_t(b)];
-    if (!touched[std::size_t(b)] || (twin >= 0 && bone.side == Side::left)) continue;
-    surfaces.renew(b);
-    polish_bone(bone, b, touches, bones, surfaces[b]);
+    const int twin = mirrors.twin[std::size_t(b)];
+    if (twin >= 0 && bone.side == Side::left) continue;
+    polish_bone(bone, b, mirrors.own[std::size_t(b)], touches, bones, search.surfaces[b]);
+    search.moved(b);
     if (twin < 0) continue;
     for (std::size_t n = 0; n < bone.nodes.size(); ++n)
       bones[std::size_t(twin)].nodes[n] = mirror(bone.nodes[n]);
+    search.moved(twin);
   }
 }
 
@@ -142,25 +209,27 @@ void finish(std::vector<PlacedBone>& bones, const std::vector<std::vector<Point>
 
 ClearanceReport clear_bones(std::vector<PlacedBone>& bones) {
   const std::vector<Articulation> joints = articulations(bones);
-  const std::vector<int> twins = twins_of(bones);
+  const Mirror mirrors(bones);
   ClearanceReport report;
-  const LargestShift whole = shift_bones(bones, joints, twins);
+  const LargestShift whole = shift_bones(bones, joints, mirrors.twin);
   report.whole_shift = whole.shift;
   if (whole.bone >= 0) report.whole_shift_bone = part_name(bones[std::size_t(whole.bone)], "");
 
   std::vector<std::vector<Point>> start;
   for (const PlacedBone& bone : bones) start.push_back(bone.nodes);
-  const ElasticBones elastic(bones, twins);
-  Surfaces surfaces(bones);
-  std::vector<Touch> touches = all_touches(bones, joints, surfaces);
-  for (const double weight : {10.0, 50.0, 200.0, 600.0, 1500.0, 1500.0}) {
-    if (touches.empty()) break;
-    elastic.press(bones, touches, weight, 20);
-    touches = all_touches(bones, joints, surfaces);
-  }
+  const ElasticBones elastic(bones, mirrors);
+  Touches search(bones, joints);
+  std::vector<Touch> touches = search.list();
+  const auto press = [&](double weight, int iterations) {
+    for (const std::vector<Touch>& group : groups_of(touches, bones, mirrors))
+      elastic.press(bones, group, weight, iterations);
+    for (const int b : bones_of(touches, mirrors)) search.moved(b);
+    touches = search.list();
+  };
+  for (const double weight : {10.0, 50.0, 200.0, 600.0, 1500.0, 1500.0}) press(weight, 20);
   for (int round = 0; round < 4 && !touches.empty(); ++round) {
-    polish_all(bones, touches, twins, surfaces);
-    touches = all_touches(bones, joints, surfaces);
+    polish_all(bones, touches, mirrors, search);
+    touches = search.list();
   }
   report_gaps(bones, touches, report);
   finish(bones, start, report);

@@ -16,7 +16,6 @@ constexpr double bulk = 6;         // b of (1): bones keep their volume
 constexpr double anchor = 2e-5;    // [1/mm2] k of (2)
 constexpr double length = 5;       // [mm] h of (2)
 constexpr double flat = 0.05;      // D below which (1) goes on linearly: never reached at rest
-constexpr double influence = 30;   // [mm] from a touch, beyond which bones stay as they are
 constexpr double most_move = 0.7;  // [mm] of a node in one iteration
 
 using Lanes = Pack<double, 8>;  // one lane a corner
@@ -88,8 +87,8 @@ double brick_energy(const Corners& x, const std::array<double, 72>& rest, Corner
 
 }  // namespace
 
-ElasticBones::ElasticBones(const std::vector<PlacedBone>& bones, const std::vector<int>& twins)
-    : rest_(bones.size()), twins_(twins) {
+ElasticBones::ElasticBones(const std::vector<PlacedBone>& bones, const Mirror& mirror)
+    : rest_(bones.size()), mirror_(mirror) {
   for (std::size_t b = 0; b < bones.size(); ++b) {
     start_.push_back(bones[b].nodes);
     for (const Brick& brick : bones[b].mesh.bricks) {
@@ -110,70 +109,81 @@ namespace {
 // them; nodes farther than `influence` from every touch stay.
 class Together {
  public:
-  Together(const std::vector<PlacedBone>& bones, const std::vector<int>& twins,
+  Together(const std::vector<PlacedBone>& bones, const Mirror& mirrors,
            const std::vector<Touch>& touches)
-      : bones_(bones), twins_(twins), first(bones.size(), -1), near(bones.size()) {
-    std::vector<std::vector<Point>> places(bones.size());
-    const auto at = [&](int b, int n) { return bones[std::size_t(b)].nodes[std::size_t(n)]; };
-    for (const Touch& t : touches) {
-      places[std::size_t(t.a)].push_back(at(t.a, t.node));
-      places[std::size_t(t.b)].push_back(at(t.b, t.quad[0]));
-    }
-    // of a pair both take part, in the same places
-    for (std::size_t b = 0; b < bones.size(); ++b)
-      if (twins[b] >= 0 && bones[b].side == Side::right) {
-        auto &right = places[b], &left = places[std::size_t(twins[b])];
-        for (const Point& p : left) right.push_back(mirror(p));
-        left = right;
-        for (Point& p : left) p = mirror(p);
-      }
+      : bones_(bones), first(bones.size(), -1), near(bones.size()) {
+    std::vector<std::vector<Point>> places = places_of(touches, mirrors);
     for (std::size_t b = 0; b < bones.size(); ++b) {
       if (places[b].empty()) continue;
       first[b] = int(nodes.size());
       nodes.insert(nodes.end(), bones[b].nodes.begin(), bones[b].nodes.end());
       choose_bricks(b, places[b]);
     }
+    leader_.assign(nodes.size(), -1);
     for (std::size_t b = 0; b < bones.size(); ++b)
-      if (takes_part(b) && master(b) < 0)
-        for (std::size_t n = 0; n < bones[b].nodes.size(); ++n)
-          if (is_free_[std::size_t(first[b]) + n]) free_.push_back(std::size_t(first[b]) + n);
+      if (takes_part(b)) choose_leaders(b, mirrors);
+    for (std::size_t n = 0; n < nodes.size(); ++n)
+      if (is_free_[n] && (leader_[n] < 0 || leader_[n] == int(n))) free_.push_back(n);
   }
   bool takes_part(std::size_t b) const { return first[b] >= 0; }
-  // first node of the bone that this one follows, or -1
-  int master(std::size_t b) const {
-    return twins_[b] >= 0 && bones_[b].side == Side::left ? first[std::size_t(twins_[b])] : -1;
-  }
   // the nodes that move of themselves
   std::vector<Point> moving() const {
     std::vector<Point> list;
     for (const std::size_t n : free_) list.push_back(nodes[n]);
     return list;
   }
-  // puts them in their places and left nodes at the mirror images of right ones
+  // puts them in their places, left nodes at the mirror images of right ones
   void place(const std::vector<Point>& moving) {
     for (std::size_t i = 0; i < free_.size(); ++i) nodes[free_[i]] = moving[i];
-    for (std::size_t b = 0; b < bones_.size(); ++b)
-      if (const int m = takes_part(b) ? master(b) : -1; m >= 0)
-        for (std::size_t n = 0; n < bones_[b].nodes.size(); ++n)
-          nodes[std::size_t(first[b]) + n] = mirror(nodes[std::size_t(m) + n]);
+    for (std::size_t n = 0; n < nodes.size(); ++n)
+      if (leader_[n] >= 0 && leader_[n] != int(n))
+        nodes[n] = mirror(nodes[std::size_t(leader_[n])]);
   }
   // the gradient by left nodes goes to right ones, then that of the nodes that move
   void reduce(std::vector<Point>& by_node, std::vector<Point>& gradient) const {
-    for (std::size_t b = 0; b < bones_.size(); ++b)
-      if (const int m = takes_part(b) ? master(b) : -1; m >= 0)
-        for (std::size_t n = 0; n < bones_[b].nodes.size(); ++n)
-          by_node[std::size_t(m) + n] += mirror(by_node[std::size_t(first[b]) + n]);
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      if (leader_[n] < 0) continue;
+      if (leader_[n] == int(n))
+        by_node[n].y = 0;  // in the plane of symmetry
+      else
+        by_node[std::size_t(leader_[n])] += mirror(by_node[n]);
+    }
     for (std::size_t i = 0; i < free_.size(); ++i) gradient[i] = by_node[free_[i]];
   }
 
  private:
+  // where each bone is touched; of a pair both in the same places
+  std::vector<std::vector<Point>> places_of(const std::vector<Touch>& touches,
+                                            const Mirror& mirrors) const {
+    std::vector<std::vector<Point>> places(bones_.size());
+    const auto at = [&](int b, int n) { return bones_[std::size_t(b)].nodes[std::size_t(n)]; };
+    const auto add = [&](int b, int n) {
+      const Point p = at(b, n);
+      places[std::size_t(b)].push_back(p);
+      const int twin = mirrors.own[std::size_t(b)] ? b : mirrors.twin[std::size_t(b)];
+      if (twin >= 0) places[std::size_t(twin)].push_back(mirror(p));
+    };
+    for (const Touch& t : touches) add(t.a, t.node), add(t.b, t.quad[0]);
+    return places;
+  }
+  // the node that each follows: its image on the right, of a node in the plane of symmetry itself
+  void choose_leaders(std::size_t b, const Mirror& mirrors) {
+    const std::size_t base = std::size_t(first[b]);
+    const int twin = bones_[b].side == Side::left ? mirrors.twin[b] : -1;
+    for (std::size_t n = 0; n < bones_[b].nodes.size(); ++n) {
+      if (twin >= 0) leader_[base + n] = first[std::size_t(twin)] + int(n);
+      if (!mirrors.own[b]) continue;
+      const std::size_t image = std::size_t(bones_[b].mesh.image[n]);
+      if (image <= n) leader_[base + n] = int(base + image);
+    }
+  }
   void choose_bricks(std::size_t b, const std::vector<Point>& places) {
     const std::vector<Point>& x = bones_[b].nodes;
     const std::size_t base = std::size_t(first[b]);
     is_free_.resize(nodes.size(), 0);
     for (std::size_t n = 0; n < x.size(); ++n)
       is_free_[base + n] = std::any_of(places.begin(), places.end(), [&](const Point& p) {
-        return dot(x[n] - p, x[n] - p) < influence * influence;
+        return dot(x[n] - p, x[n] - p) < ElasticBones::influence * ElasticBones::influence;
       });
     for (std::size_t e = 0; e < bones_[b].mesh.bricks.size(); ++e) {
       const Brick& brick = bones_[b].mesh.bricks[e];
@@ -183,8 +193,8 @@ class Together {
     }
   }
   const std::vector<PlacedBone>& bones_;
-  const std::vector<int>& twins_;
   std::vector<char> is_free_;
+  std::vector<int> leader_;  // node that this one mirrors, itself in the plane of symmetry, or -1
   std::vector<std::size_t> free_;
 
  public:
@@ -235,18 +245,19 @@ double ElasticBones::own_energy(std::size_t bone, const std::vector<std::array<i
 
 void ElasticBones::press(std::vector<PlacedBone>& bones, const std::vector<Touch>& touches,
                          double weight, int iterations) const {
-  Together all(bones, twins_, touches);
+  Together all(bones, mirror_, touches);
   std::vector<Point> moving = all.moving(), by_node(all.nodes.size());
   const auto energy = [&](const std::vector<Point>& at, std::vector<Point>& gradient) {
     all.place(at);
     std::fill(by_node.begin(), by_node.end(), Point{0, 0, 0});
     double sum = touch_energy(all, touches, weight / (length * length), all.nodes, by_node);
     for (std::size_t b = 0; b < bones.size(); ++b) {
-      if (!all.takes_part(b) || all.master(b) >= 0) continue;
+      const bool twin = mirror_.twin[b] >= 0;
+      if (!all.takes_part(b) || (twin && bones[b].side == Side::left)) continue;
       const std::size_t base = std::size_t(all.first[b]);
       // a left bone has the energy of the right one
-      sum += own_energy(b, bones[b].mesh.bricks, all.near[b], twins_[b] >= 0 ? 2 : 1,
-                        &all.nodes[base], &by_node[base]);
+      sum += own_energy(b, bones[b].mesh.bricks, all.near[b], twin ? 2 : 1, &all.nodes[base],
+                        &by_node[base]);
     }
     all.reduce(by_node, gradient);
     return sum;

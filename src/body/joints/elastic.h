@@ -5,15 +5,17 @@
 // f measures the change of shape, g that of volume; both are 1 at rest, and grow without bounds as
 // a corner is pressed flat. A touch adds w (max(0, gap - d) / h)^2, d its distance with the normal
 // and the place on the face kept, every node k |u|^2 (u its shift) against drifting.   (2)
+#include "body/joints/mirror.h"
 #include "body/joints/touch.h"
 
 namespace fabrica::body {
 
 class ElasticBones {
  public:
-  // takes the bones as they are for the state at rest; twins: the bone that is the mirror image,
-  // or -1: its nodes move as one with those of the right one
-  ElasticBones(const std::vector<PlacedBone>& bones, const std::vector<int>& twins);
+  static constexpr double influence = 30;  // [mm] from a touch, beyond which bones stay as they are
+  // Takes the bones as they are for the state at rest. Nodes of the left move as one with those of
+  // the right that they mirror, nodes in the plane of symmetry stay in it.
+  ElasticBones(const std::vector<PlacedBone>& bones, const Mirror& mirror);
   // moves the nodes of all bones that touches name towards the minimum of (1) and (2)
   void press(std::vector<PlacedBone>& bones, const std::vector<Touch>& touches, double weight,
              int iterations) const;
@@ -29,7 +31,7 @@ class ElasticBones {
   };
   std::vector<std::vector<Rest>> rest_;
   std::vector<std::vector<Point>> start_;
-  std::vector<int> twins_;
+  const Mirror& mirror_;
 };
 
 }  // namespace fabrica::body

@@ -164,3 +164,34 @@ TEST_CASE("bones of both sides still mirror each other where the bone between is
   CHECK(off < 1e-12);
   CHECK(moved > 0.2);
 }
+
+// The same plates on both sides of a block that mirrors itself. Invariance, to the bit: nodes of
+// the block are not moved one by one on both sides, but as one with their images.
+TEST_CASE("a bone of the midline that mirrors itself does so after it was cleared") {
+  PlacedBone right = block("plate", {2, -10, 2}, 5.5, 3);
+  right.side = Side::right;
+  PlacedBone left = right;
+  left.side = Side::left;
+  left.mesh = mirrored(right.mesh);
+  for (Point& p : left.nodes) p = mirror(p);
+  PlacedBone middle = block("wedge", {0, -5, 0}, 10, 4);
+  middle.side = Side::midline;
+  for (const Point& p : middle.nodes) {
+    std::size_t n = 0;
+    while (norm(middle.nodes[n] - mirror(p)) > 1e-9) ++n;
+    middle.mesh.image.push_back(int(n));
+  }
+  std::vector<PlacedBone> bones{right, left, middle};
+  const ClearanceReport report = clear_bones(bones);
+  CHECK(report.left.empty());
+  double moved = 0;
+  const std::vector<Point>& now = bones[2].nodes;
+  for (std::size_t n = 0; n < now.size(); ++n) {
+    const Point image = mirror(now[std::size_t(middle.mesh.image[n])]);
+    CHECK((now[n].x == image.x && now[n].y == image.y && now[n].z == image.z));
+    moved = std::max(moved, norm(now[n] - middle.nodes[n]));
+  }
+  CHECK(moved > 0.1);
+  for (std::size_t n = 0; n < right.nodes.size(); ++n)
+    CHECK(norm(bones[0].nodes[n] - mirror(bones[1].nodes[n])) < 1e-12);
+}

@@ -89,6 +89,10 @@ std::vector<LoftStation> read_ellipses(const std::string& piece) {
   return stations;
 }
 
+bool is_ray(const std::string& bone) {
+  return bone.starts_with("meta") || bone.find("_phalanx") != std::string::npos;
+}
+
 std::vector<LoftStation> read_stations(const std::string& bone) {
   const auto starts = [&](const char* prefix) { return bone.rfind(prefix, 0) == 0; };
   if (bone == "costal_cartilage8" || bone == "costal_cartilage9" || bone == "costal_cartilage10")
@@ -99,9 +103,19 @@ std::vector<LoftStation> read_stations(const std::string& bone) {
   return read_sections(bone + "_loft", "main");
 }
 
+// Sections that mirror themselves: centred in the plane y = 0, r(phi) = r(pi - phi) the mean of the
+// two halves; phi counts from the y axis.
+void make_symmetric(std::vector<LoftStation>& stations) {
+  for (LoftStation& s : stations) {
+    s.c.y = 0;
+    for (int k = 1; k <= loft_harmonics; ++k) (k % 2 ? s.cosine : s.sine)[k - 1] = 0;
+  }
+}
+
 struct IndexRow {
   double volume = 0;  // [mm3]
   Axes axes;
+  Point low{}, high{};  // [mm] box of the measured bone
 };
 
 IndexRow index_row(const std::string& bone) {
@@ -110,6 +124,11 @@ IndexRow index_row(const std::string& bone) {
   for (int row = 0; row < table.rows(); ++row) {
     if (table.text(row, "bone") != bone) continue;
     result.volume = 1000 * table.number(row, "volume");
+    for (int i = 0; i < 3; ++i) {
+      const std::string axis(1, "xyz"[i]);
+      result.low[i] = table.number(row, axis + "min"),
+      result.high[i] = table.number(row, axis + "max");
+    }
     if (!table.text(row, "nx").empty()) {
       result.axes.n = point(table, row, "n");
       result.axes.e1 = point(table, row, "e1");
@@ -184,8 +203,15 @@ BoneShape bone_shape(const std::string& name, double grid, double margin) {
                        margin);
   std::optional<Loft> loft;
   const bool stacked = bone_recipe(name).maker != "loft" && has_data_file(path_of(name + "_stack"));
-  if (!stacked) loft.emplace(read_stations(name), 0.8);
-  if (loft && index.volume > 0) loft->match_volume(index.volume);
+  if (!stacked) {
+    std::vector<LoftStation> stations = read_stations(name);
+    if (bone_recipe(name).symmetric) make_symmetric(stations);
+    loft.emplace(std::move(stations), 0.8);
+  }
+  if (loft && is_ray(name))
+    loft->fit_ends(index.low, index.high, index.volume);
+  else if (loft && index.volume > 0)
+    loft->match_volume(index.volume);
   BoneShape shape{stacked ? DistanceField::of_slices(read_slices(name), index.axes, grid, margin)
                           : DistanceField::of_triangles(loft->surface(36, 3.0), grid, margin),
                   loft,

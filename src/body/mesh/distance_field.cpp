@@ -227,6 +227,15 @@ double DistanceField::value(const Point& p) const {
 }
 
 DistanceField DistanceField::symmetric() const {
+  // centre of the volume, half a cell where the surface passes through
+  double moment = 0, sum = 0;
+  for (int k = 0; k < count_[2]; ++k)
+    for (int j = 0; j < count_[1]; ++j)
+      for (int i = 0; i < count_[0]; ++i) {
+        const double inside = std::clamp(0.5 - (at(i, j, k) - offset) / spacing_, 0.0, 1.0);
+        sum += inside, moment += inside * (origin_.y + j * spacing_);
+      }
+  const double middle = sum > 0 ? moment / sum : 0;
   DistanceField field = *this;
   const double low = origin_.y, high = low + (count_[1] - 1) * spacing_;
   const int half = int(std::ceil(std::max(std::abs(low), std::abs(high)) / spacing_));
@@ -234,7 +243,9 @@ DistanceField DistanceField::symmetric() const {
   field.count_[1] = 2 * half + 1;
   field.phi_.assign(std::size_t(count_[0]) * field.count_[1] * count_[2], 0.0f);
   field.fill([&](const Point& q) {
-    return 0.5 * (value(axes_.to_bone(q)) + value(axes_.to_bone({q.x, -q.y, q.z}))) + offset;
+    return 0.5 * (value(axes_.to_bone({q.x, middle + q.y, q.z})) +
+                  value(axes_.to_bone({q.x, middle - q.y, q.z}))) +
+           offset;
   });
   field.divide_by_gradient();
   return field;

@@ -12,7 +12,8 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double core_size = 0.52;  // half width of the O-grid's core in radii
 constexpr double last_section =
-    0.6;  // height of the last section of bricks in a dome, in dome heights
+    0.6;                        // height of the last section of bricks in a dome, in dome heights
+constexpr double flared = 0.3;  // of the length from either end, where ends widen
 
 Point unit(const Point& p) { return (1 / norm(p)) * p; }
 
@@ -94,7 +95,11 @@ Point point_of(const LoftStation& section, double phi, double rho) {
 }
 
 Loft::Loft(std::vector<LoftStation> stations, double dome)
-    : stations_(std::move(stations)), dome_(dome) {
+    : stations_(std::move(stations)), dome_{dome, dome} {
+  measure();
+}
+
+void Loft::measure() {
   stations_.front().s = 0;
   for (std::size_t i = 1; i < stations_.size(); ++i)
     stations_[i].s = stations_[i - 1].s + norm(stations_[i].c - stations_[i - 1].c);
@@ -121,15 +126,18 @@ LoftStation Loft::section(double s) const {
   const Point e = (1 - t) * a.e1 + t * b.e1;
   r.e1 = unit(e - dot(e, r.n) * r.n);
   r.r0 = cubic([](const LoftStation& p) { return p.r0; });
+  const double from_end = std::max(std::min(s, length() - s), 0.0) / (flared * length());
+  const double rest = std::max(1 - from_end, 0.0), scale = 1 + flare_ * rest * rest;
+  r.r0 *= scale;
   for (int k = 0; k < loft_harmonics; ++k) {
-    r.cosine[k] = cubic([k](const LoftStation& p) { return p.cosine[k]; });
-    r.sine[k] = cubic([k](const LoftStation& p) { return p.sine[k]; });
+    r.cosine[k] = scale * cubic([k](const LoftStation& p) { return p.cosine[k]; });
+    r.sine[k] = scale * cubic([k](const LoftStation& p) { return p.sine[k]; });
   }
   return r;
 }
 
-double Loft::volume(double dome) const {
-  const TriangleSurface closed = Loft(stations_, dome).surface(32, 2.0);
+double Loft::volume() const {
+  const TriangleSurface closed = surface(32, 2.0);
   double six_times = 0;
   for (const auto& t : closed.triangles)
     six_times += dot(closed.nodes[t[0]], cross(closed.nodes[t[1]], closed.nodes[t[2]]));
@@ -139,8 +147,41 @@ double Loft::volume(double dome) const {
 void Loft::match_volume(double volume) {
   double low = 0.3, high = 1.8;
   for (int i = 0; i < 12; ++i) {
-    dome_ = 0.5 * (low + high);
-    (this->volume(dome_) < volume ? low : high) = dome_;
+    dome_[0] = dome_[1] = 0.5 * (low + high);
+    (this->volume() < volume ? low : high) = dome_[0];
+  }
+}
+
+double Loft::dome_within(double s, double sign, const Point& low, const Point& high) const {
+  const LoftStation end = section(s);
+  int axis = 0;
+  for (int i = 1; i < 3; ++i)
+    if (std::abs(end.n[i]) > std::abs(end.n[axis])) axis = i;
+  const double along = std::abs(end.n[axis]);
+  const double room = sign * end.n[axis] > 0 ? high[axis] - end.c[axis] : end.c[axis] - low[axis];
+  const double aside2 = end.r0 * end.r0 * (1 - along * along);
+  return room * room > aside2 && room > 0 ? std::sqrt(room * room - aside2) / (along * end.r0) : 0;
+}
+
+void Loft::fit_ends(const Point& low, const Point& high, double volume) {
+  constexpr double least = 0.4, most = 1.2;  // heights of domes in mean radii
+  // ends that have no room even for a low dome draw back
+  const double step = 0.01 * length();
+  double first = 0, last = length();
+  while (first < 0.3 * length() && dome_within(first, -1, low, high) < least) first += step;
+  while (last > 0.7 * length() && dome_within(last, 1, low, high) < least) last -= step;
+  std::vector<LoftStation> kept{section(first)};
+  for (const LoftStation& s : stations_)
+    if (s.s > first + step && s.s < last - step) kept.push_back(s);
+  kept.push_back(section(last));
+  stations_ = kept;
+  measure();
+  double thin = -0.2, wide = 0.8;
+  for (int i = 0; i < 12; ++i) {
+    flare_ = 0.5 * (thin + wide);
+    dome_[0] = std::clamp(dome_within(0, -1, low, high), least, most);
+    dome_[1] = std::clamp(dome_within(length(), 1, low, high), least, most);
+    (this->volume() < volume ? thin : wide) = flare_;
   }
 }
 
@@ -162,7 +203,7 @@ TriangleSurface Loft::surface(int around, double step) const {
       result.nodes.push_back(point_of(section, 2 * pi * m / around, rho) + height * section.n);
   };
   const auto dome_ring = [&](const LoftStation& section, double latitude, double sign) {
-    add_ring(section, cos(latitude), sign * dome_ * section.r0 * sin(latitude));
+    add_ring(section, cos(latitude), sign * dome_[sign > 0] * section.r0 * sin(latitude));
   };
   constexpr int dome_rings = 6;
   const LoftStation first = section(0), last = section(length());
@@ -179,8 +220,8 @@ TriangleSurface Loft::surface(int around, double step) const {
       result.triangles.push_back({a, b + around, a + around});
     }
   const int low = int(result.nodes.size()), high = low + 1;
-  result.nodes.push_back(first.c - (dome_ * first.r0) * first.n);
-  result.nodes.push_back(last.c + (dome_ * last.r0) * last.n);
+  result.nodes.push_back(first.c - (dome_[0] * first.r0) * first.n);
+  result.nodes.push_back(last.c + (dome_[1] * last.r0) * last.n);
   for (int m = 0; m < around; ++m) {
     result.triangles.push_back({low, (m + 1) % around, m});
     result.triangles.push_back(
@@ -208,13 +249,14 @@ BoneMesh Loft::bricks(int core, bool ring, double h) const {
       const double phi = shape.angle + std::atan2(std::sqrt(shape.b) * sin(p.psi),
                                                   std::sqrt(shape.a) * cos(p.psi));
       const double rho = scale * p.rho;
-      const double height = cap * dome_ * section.r0 * std::sqrt(1 - rho * rho);
+      const double height = cap * dome_[cap > 0] * section.r0 * std::sqrt(1 - rho * rho);
       mesh.nodes.push_back(point_of(section, phi, rho) + height * section.n);
     }
   };
   // the first and last sections stand inside the domes, the others evenly between them
   const LoftStation first = section(0), last = section(length());
-  const double before = last_section * dome_ * first.r0, after = last_section * dome_ * last.r0;
+  const double before = last_section * dome_[0] * first.r0,
+               after = last_section * dome_[1] * last.r0;
   const double span = before + length() + after;
   const int layers = std::max(2, int(std::lround(span / h)));
   add_section(first, -1);

@@ -27,6 +27,11 @@ class Loft {
   double length() const { return stations_.back().s; }
   // chooses the height of the domes, 0.3 to 1.8 mean radii, that brings the volume [mm3] nearest
   void match_volume(double volume);
+  // Ends of a bone that lie in a box [mm]: domes of 0.4 to 1.2 mean radii reach to the faces of the
+  // box that they look at, end sections without room for that draw back; the volume comes from the
+  // girth, which grows by the factor 1 + a (1 - t / 0.3)^2, t the distance from either end in
+  // lengths.
+  void fit_ends(const Point& low, const Point& high, double volume);
   // section at s [mm] in [0, length]: cubic between the stations
   LoftStation section(double s) const;
   // s of the point of the centre-line nearest to p
@@ -39,10 +44,14 @@ class Loft {
   BoneMesh bricks(int core, bool ring, double h) const;
 
  private:
-  double volume(double dome) const;
+  void measure();  // s of the stations
+  double volume() const;
+  // height in mean radii of a dome over the section at s, towards sign n, that reaches to the box
+  double dome_within(double s, double sign, const Point& low, const Point& high) const;
 
   std::vector<LoftStation> stations_;
-  double dome_;
+  std::array<double, 2> dome_;  // at the start and at the end
+  double flare_ = 0;            // a of the girth
 };
 
 // the point of a section at angle phi and fraction rho of the radius

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "body/mesh/loft.h"
 
@@ -161,6 +162,60 @@ TEST_CASE("a round loft has the volume of a cylinder with domes, and its bricks 
   CHECK(figures.min_scaled_jacobian > 0.5);
   CHECK(figures.volume == doctest::Approx(exact).epsilon(0.01));
   CHECK(surface_error(mesh, field).mean < 0.4);
+}
+
+// A straight round loft whose ends lie in a box: one station stands outside of it, the other has
+// room for a dome of 3. Closed form: the faces of the box, and the volume that was asked for.
+TEST_CASE("the ends of a loft reach to the faces of a box and the girth takes the volume") {
+  std::vector<LoftStation> stations;
+  for (int i = 0; i < 6; ++i) {
+    LoftStation s;
+    s.c = {0, 0, 12.0 * i};
+    s.n = {0, 0, 1};
+    s.e1 = {1, 0, 0};
+    s.r0 = 7;
+    stations.push_back(s);
+  }
+  const double volume = pi * 49 * 62;
+  Loft loft(stations, 0.8);
+  loft.fit_ends({-9, -9, -3}, {9, 9, 58}, volume);
+  const TriangleSurface surface = loft.surface(64, 1);
+  double low = 0, high = 0;
+  for (const Point& p : surface.nodes) low = std::min(low, p.z), high = std::max(high, p.z);
+  CHECK(low == doctest::Approx(-3).epsilon(0.1));
+  CHECK(high == doctest::Approx(58).epsilon(0.01));
+  CHECK(DistanceField::of_triangles(surface, 0.5, 4).volume() ==
+        doctest::Approx(volume).epsilon(0.01));
+  CHECK(loft.section(0).r0 > 7.3);  // wider where the bone ends
+  CHECK(loft.section(0.5 * loft.length()).r0 == doctest::Approx(7));
+}
+
+// A sphere of radius 10 about y = 1 becomes the sphere about 0: the distance |p| - 10. Invariance:
+// each node has its image, to the bit.
+TEST_CASE("a field, its cells and the bricks fitted to it mirror themselves") {
+  const Point centre{0, 1, 0};
+  const DistanceField sphere =
+      DistanceField::of_function(Box{{-10, -9, -10}, {10, 11, 10}}, 0.5, 4,
+                                 [&](const Point& p) { return norm(p - centre) - 10; });
+  DistanceField field = sphere.symmetric();
+  for (const Point& p : {Point{3, 4, 8}, Point{-7, -5, 3}, Point{1, 9, -2}, Point{6, 0, 7}}) {
+    CHECK(std::abs(field.value(p) - (norm(p) - 10)) < 0.03);
+    CHECK(field.value(p) == doctest::Approx(field.value({p.x, -p.y, p.z})).epsilon(1e-9));
+  }
+  CellOptions options{"sphere", 3, 0, 2, true};
+  const BoneMesh mesh = mesh_solid(field, options, {field.volume(), 100, 0.5});
+  CHECK(measure(mesh).min_scaled_jacobian > 0.4);
+  REQUIRE(mesh.image.size() == mesh.nodes.size());
+  for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
+    const int m = mesh.image[n];
+    CHECK(mesh.image[m] == int(n));
+    CHECK((mesh.nodes[m].x == mesh.nodes[n].x && mesh.nodes[m].y == -mesh.nodes[n].y &&
+           mesh.nodes[m].z == mesh.nodes[n].z));
+  }
+  std::set<Quad> quads(mesh.surface.begin(), mesh.surface.end());
+  for (const Quad& q : mesh.surface)
+    CHECK(quads.count({mesh.image[q[0]], mesh.image[q[3]], mesh.image[q[2]], mesh.image[q[1]]}) ==
+          1);
 }
 
 TEST_CASE("a tangled block comes back to cubes") {
