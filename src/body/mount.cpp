@@ -53,7 +53,7 @@ Point pivot_of(const RigPot& pot, const PlacedBone& bone) {
   std::vector<Point> near;
   for (const Point& p : held)
     if (std::abs(dot(p, toward) - at) <= *pot.pivot) near.push_back(p);
-  const Point centre = mean(near);
+  const Point centre = mean(near.empty() ? held : near);
   return centre + (at - dot(centre, toward)) * toward;
 }
 

@@ -29,6 +29,7 @@ std::vector<BoneName> bones_of(RigTable& table, const std::string& key, const st
   std::vector<BoneName> names;
   for (const std::string& text : table.texts(key, what))
     names.push_back(bone_name(table, key, text));
+  if (names.empty()) table.fail(key, "is empty; give " + what);
   return names;
 }
 

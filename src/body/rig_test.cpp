@@ -96,6 +96,7 @@ TEST_CASE("a rig is read, and what is wrong in it is said with its line") {
             .starts_with("7: pot[1].pivot is 21 mm behind"));
   CHECK(refusal("depth = 20", "depth = 20\npivot = 2\npivot_at = [0, 0, 0]")
             .starts_with("8: pot[1].pivot_at and pivot say"));
+  CHECK(refusal("bones = [\"right.rib5\"]", "bones = []").starts_with("4: pot[1].bones is empty"));
   CHECK(refusal("free = [\"rz\"]", "start_velocity = [0, 0, 1]")
             .starts_with("7: pot[1].start_velocity goes along z, which is held"));
   CHECK(refusal("motion =", "load = [{ along = \"x\", force = [[0, 0], [1, 1]] }]\nmotion =")
