@@ -46,7 +46,8 @@ struct PlasticKinematic {
             p.integer("vp") == 1};
   }
   Elastic elastic() const { return {density, moduli.bulk, moduli.shear}; }
-  bool may_fail() const { return failure_strain > 0; }
+  // decks write 1e20 or 1e21 where nothing is to fail
+  bool may_fail() const { return failure_strain > 0 && failure_strain < Real(1e20); }
 
   template <class L>
   FABRICA_FN Sym3<L> stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point,
