@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <functional>
+#include <set>
 
 #include "body/mesh/quality.h"
 #include "result/picture.h"
@@ -151,12 +152,15 @@ class Scene {
       if (!bricks.empty()) surface(b.nodes, bricks, layer == 0 ? bone : second_bone + layer);
     }
   }
-  // pieces whose shared nodes all belong to bones that are shown
+  // pieces whose shared nodes all belong to bones that are shown, and so do the ends that they name
   void add_pieces() {
+    std::set<std::string> names{""};
+    for (const PlacedBone& b : body_.bones)
+      if (view_->take(b)) names.insert(body::part_name(b, ""));
     std::vector<std::vector<Point>> places;
     for (const Piece& piece : body_.between.pieces) {
       std::vector<Point>& nodes = places.emplace_back();
-      bool shown = true;
+      bool shown = names.count(piece.bone_a) && names.count(piece.bone_b);
       for (const body::PieceNode& n : piece.nodes) {
         if (n.bone >= 0) shown = shown && view_->take(body_.bones[std::size_t(n.bone)]);
         nodes.push_back(n.bone >= 0    ? body_.bones[std::size_t(n.bone)].nodes[std::size_t(n.node)]
