@@ -142,9 +142,8 @@ int body_command(const BodyCommand& c) {
   if (!out) throw BodyError(fmt::format("cannot write {}", deck.string()));
   write_file(folder / (deck.stem().string() + "_landmarks.csv"),
              body::landmarks_csv(made.skeleton));
-  if (!made.between.pieces.empty())
-    write_file(folder / (deck.stem().string() + "_joints.csv"),
-               body::joints_csv(body::joint_rows(made, assembled)));
+  if (const auto rows = body::joint_rows(made, assembled); !rows.empty())
+    write_file(folder / (deck.stem().string() + "_joints.csv"), body::joints_csv(rows));
   const CheckReport check = check_model(*model, diagnostics);
   const body::OutsideMeasures outside = search_contacts(*model, seconds, diagnostics);
   write_file(folder / (deck.stem().string() + "_measures.md"),

@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+"""Turns joints of the skeleton through their ranges and prints torque over angle.
+
+joint_ranges.py FABRICA OUT [JOINT ...]
+
+Each joint is made of its bones alone in a test rig: the first bone is held, the second turned about its frame's origin, the centre of
+the joint, at a steady rate after a start of 5 ms, while it may shift freely. Its mass is that of the bone. Ranges are those of
+data/anatomy/joint_axes.csv, axes rounded to those of the held bone's frame. Torque on the turned bone, from the work W of the motion
+and the kinetic energy T:
+
+    M = d(W - T) / d(angle)
+
+as means over fifths of the range, against the motion where positive; a positive angle of flexion turns about +y (knee and elbow about
+-y, so that they bend). Exit status 1 if a run does not reach its end or a joint comes apart by more than 3 mm.
+"""
+import argparse
+import csv
+import math
+import pathlib
+import subprocess
+import sys
+
+# joint: held, turned, others, axis, sign, joint and coordinate of the table
+JOINTS = {
+    "C4 flexion": ("C5", "C4", [], "ry", 1, "C4", "flexion"),
+    "T6 flexion": ("T7", "T6", [], "ry", 1, "T6", "flexion"),
+    "L3 flexion": ("L4", "L3", [], "ry", 1, "L3", "flexion"),
+    "L3 lateral": ("L4", "L3", [], "rx", 1, "L3", "lateral"),
+    "hip flexion": ("right.hip_bone", "right.femur", [], "ry", -1, "hip", "flexion"),
+    "knee flexion": ("right.femur", "right.tibia", ["right.fibula", "right.patella"], "ry", 1, "knee", "flexion"),
+    "ankle dorsiflexion": ("right.tibia", "right.talus", ["right.fibula", "right.calcaneus"], "ry", -1, "ankle", "dorsiflexion"),
+    "shoulder flexion": ("right.scapula", "right.humerus", [], "ry", -1, "shoulder", "flexion"),
+    "elbow flexion": ("right.humerus", "right.ulna", ["right.radius"], "ry", -1, "elbow", "flexion"),
+}
+RATE = 2  # degrees / ms
+START = 5  # ms; twice that and half the rate where other bones are carried along
+
+
+def limits(root, joint, coordinate):
+    table = [line for line in (root / "data/anatomy/joint_axes.csv").read_text().splitlines() if not line.startswith("#")]
+    for row in csv.DictReader(table):
+        if row["joint"] == joint and row["coordinate"] == coordinate:
+            return float(row["low"]), float(row["high"])
+    raise SystemExit(f"data/anatomy/joint_axes.csv has no {joint} {coordinate}")
+
+
+def rig(held, turned, others, axis, radians, time, start):
+    bones = ", ".join(f'"{b}"' for b in [turned, *others])
+    rate = radians / (time - start / 2)
+    return f"""end_time     = {time:.2f}
+output_every = {time / 200:.4f}
+states_every = {time / 20:.4f}
+[[pot]]
+name   = "held"
+bones  = ["{held}"]
+toward = [0, 0, 1]
+depth  = 2000
+[[pot]]
+name   = "turned"
+bones  = ["{turned}"]
+toward = [0, 0, 1]
+depth  = 2000
+pivot_at = [0, 0, 0]
+free   = ["x", "y", "z"]
+motion = {{ along = "{axis}", velocity = [[0, 0], [{start}, {rate:.6f}], [{time:.2f}, {rate:.6f}]] }}
+[[specimen]]
+bone = "{held}"
+with = [{bones}]
+"""
+
+
+def torques(folder, radians, time, start):
+    rows = list(csv.DictReader((folder / "csv/glstat.csv").open()))
+    rate = abs(radians) / (time - start / 2)
+    work = [float(r["external_work"]) - float(r["kinetic_energy"]) for r in rows]
+
+    def angle(t):
+        return rate * t * t / (2 * start) if t < start else rate * (t - start / 2)
+
+    angles = [angle(float(r["time"])) for r in rows]
+    out = []
+    for k in range(5):
+        low, high = abs(radians) * k / 5, abs(radians) * (k + 1) / 5
+        i = min(range(len(angles)), key=lambda n: abs(angles[n] - low))
+        j = min(range(len(angles)), key=lambda n: abs(angles[n] - high))
+        out.append((work[j] - work[i]) / (angles[j] - angles[i]))  # kN mm = N m
+    return out
+
+
+def run(fabrica, folder, name, joint, degrees):
+    held, turned, others, axis, sign = joint[:5]
+    radians = sign * math.radians(degrees)
+    slower = 2 if others else 1
+    start = START * slower
+    time = abs(degrees) / RATE * slower + start / 2 + 2
+    stem = folder / f"{name.replace(' ', '_')}_{degrees:+g}"
+    stem.with_suffix(".toml").write_text(rig(held, turned, others, axis, radians, time, start))
+    deck = stem.with_suffix(".k")
+    subprocess.run([fabrica, "body", "--trial", stem.with_suffix(".toml"), "--out", deck, "--quiet"],
+                   check=True, capture_output=True, text=True)
+    out = subprocess.run([fabrica, "run", deck, "--out", stem, "--threads", "1", "--quiet"], capture_output=True, text=True)
+    if out.returncode != 0:
+        return None, None, ([line for line in out.stdout.splitlines() if line.startswith("ending")] or ["run failed"])[0]
+    table = stem.with_suffix(".csv")
+    subprocess.run([fabrica, "joints", stem, "--joints", folder / f"{deck.stem}_joints.csv", "--csv", table],
+                   check=True, capture_output=True, text=True)
+    apart = max(float(r["apart"]) for r in csv.DictReader(table.open()))
+    return torques(stem, radians, time, start), apart, ""
+
+
+def main():
+    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p.add_argument("fabrica")
+    p.add_argument("out", type=pathlib.Path)
+    p.add_argument("joints", nargs="*", help="of the list; default all")
+    a = p.parse_args()
+    a.out.mkdir(parents=True, exist_ok=True)
+    root = pathlib.Path(__file__).resolve().parents[3]
+    for name in a.joints:
+        if name not in JOINTS:
+            p.error(f"joint {name} is unknown; there are {', '.join(JOINTS)}")
+    bad = 0
+    print("| joint | to [degrees] | torque over fifths of the way [N m] | apart [mm] | remark |")
+    print("| --- | --- | --- | --- | --- |")
+    for name in a.joints or JOINTS:
+        for degrees in limits(root, *JOINTS[name][5:]):
+            if degrees == 0:
+                continue
+            torque, apart, failed = run(a.fabrica, a.out, name, JOINTS[name], degrees)
+            bad += bool(failed) or not apart <= 3
+            curve = "-" if torque is None else " ".join(f"{t:.2f}" for t in torque)
+            print(f"| {name} | {degrees:g} | {curve} | {'-' if apart is None else f'{apart:.2f}'} | {failed} |", flush=True)
+    return 1 if bad else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
