@@ -28,6 +28,7 @@ JOINTS = {
     "L3 lateral": ("L4", "L3", [], "rx", 1, "L3", "lateral"),
     "hip flexion": ("right.hip_bone", "right.femur", [], "ry", -1, "hip", "flexion"),
     "knee flexion": ("right.femur", "right.tibia", ["right.fibula", "right.patella"], "ry", 1, "knee", "flexion"),
+    "knee flexion without fibula": ("right.femur", "right.tibia", ["right.patella"], "ry", 1, "knee", "flexion"),
     "ankle dorsiflexion": ("right.tibia", "right.talus", ["right.fibula", "right.calcaneus"], "ry", -1, "ankle", "dorsiflexion"),
     "shoulder flexion": ("right.scapula", "right.humerus", [], "ry", -1, "shoulder", "flexion"),
     "elbow flexion": ("right.humerus", "right.ulna", ["right.radius"], "ry", -1, "elbow", "flexion"),
