@@ -54,7 +54,7 @@ TEST_CASE("statistics of a column are those of its numbers") {
 TEST_CASE("the load at failure is neither a ripple before it nor a swing after it") {
   // ripple, rise, fall to 80 %, rise, fracture, larger swing
   CHECK(failure_load({0, -0.2, 0, -3, -5, -4, -6, -1, 5, -7, 0}) == 6);
-  CHECK(failure_load({0, 1, 2, 3}) == 3);       // nothing gave way
+  CHECK(failure_load({0, 1, 2, 3}) == 3);     // nothing gave way
   CHECK(failure_load({0, 2, 1, 9, 0}) == 9);  // at less than a quarter of the peak nothing counts
   CHECK(failure_load({0, -3, -5, 18, 0}) == 5);  // swings back beyond it between two samples
   CHECK(failure_load({}) == 0);

@@ -57,8 +57,8 @@ class DistanceField {
   // distance.
   void divide_by_gradient();
 
-  // The solid with the centre of its volume moved to y = 0, and halfway to its mirror image there: the
-  // mean of the two distances. The grid mirrors itself; its second axis must be y.
+  // The solid with the centre of its volume moved to y = 0, and halfway to its mirror image there:
+  // the mean of the two distances. The grid mirrors itself; its second axis must be y.
   DistanceField symmetric() const;
 
   // signed distance less the outward offset, at a point of the bone frame
