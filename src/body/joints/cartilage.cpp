@@ -289,6 +289,10 @@ void ArticulationMaker::symphysis(const Articulation& joint, const Patch& a) {
     }
   for (int q : a.quads) {
     const auto& s = bone(joint.a).mesh.surface[std::size_t(q)];
+    Corners corners;
+    for (std::size_t i = 0; i < 4; ++i)
+      corners[i] = builder.at(level[{s[i], 0}]), corners[i + 4] = builder.at(level[{s[i], layers}]);
+    if (scaled_jacobian(corners) < least_jacobian) continue;  // askew at the rim
     for (int k = 0; k < layers; ++k) {
       std::array<int, 8> brick;
       for (std::size_t i = 0; i < 4; ++i)

@@ -227,7 +227,11 @@ ClearanceReport clear_bones(std::vector<PlacedBone>& bones) {
     touches = search.list();
   };
   for (const double weight : {10.0, 50.0, 200.0, 600.0, 1500.0, 1500.0}) press(weight, 20);
-  for (int round = 0; round < 4 && !touches.empty(); ++round) {
+  const auto overlap = [&] {
+    return std::any_of(touches.begin(), touches.end(),
+                       [](const Touch& t) { return t.distance < -allowed; });
+  };
+  for (int round = 0; !touches.empty() && (round < 4 || (round < 12 && overlap())); ++round) {
     polish_all(bones, touches, mirrors, search);
     touches = search.list();
   }
