@@ -26,6 +26,7 @@ SignalSpec read_signal(Fields f) {
   s.model = f.text("model");
   s.x = f.text("x", "");
   s.unit = f.text("unit", "");
+  s.x_name = f.text("x_name", "");
   s.x_unit = f.text("x_unit", "");
   s.scale = f.number("scale", 1);
   s.x_scale = f.number("x_scale", 1);

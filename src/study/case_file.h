@@ -14,6 +14,7 @@ struct SignalSpec {
   std::string name;
   std::string model;   // "database:column" of the result, or "file.csv:column" in the folder
   std::string x;       // what the curve is drawn over; empty: time
+  std::string x_name;  // as the page calls it; empty: the column
   std::string unit;    // after scaling, as shown and as the reference must have it
   std::string x_unit;  // likewise of the abscissa
   double scale = 1;    // from the result's unit into `unit`

@@ -150,7 +150,10 @@ void rate(const SignalSpec& s, const std::string& time_unit, SignalResult& r) {
 SignalResult compare_signal(const SignalSpec& s, Channels& channels, const Case& c) {
   SignalResult r;
   r.name = s.name, r.unit = s.unit, r.filter = s.filter, r.x_unit = s.x_unit, r.paper = s.paper;
-  if (!s.x.empty()) r.x_name = s.x.find(':') == std::string::npos ? s.x : column_of(s.x);
+  if (!s.x.empty())
+    r.x_name = !s.x_name.empty()                    ? s.x_name
+               : s.x.find(':') == std::string::npos ? s.x
+                                                    : column_of(s.x);
   r.model = model_curve(s, channels);
   if (!s.filter.empty()) r.model.y = filtered(s.filter, r.model, {s.unit, c.time_unit});
   const std::size_t peak = index_of_peak(r.model.y);

@@ -93,7 +93,7 @@ double failure_load(const std::vector<double>& y) {
   for (const double v : y) peak = std::max(peak, std::abs(v));
   for (const double v : y) {
     const bool loaded = std::abs(largest) >= 0.25 * peak;
-    if (loaded && v * largest <= 0.7 * largest * largest) break;
+    if (loaded && v * largest <= 0.5 * largest * largest) break;
     if (std::abs(v) > std::abs(largest)) largest = v;
   }
   return std::abs(largest);

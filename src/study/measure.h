@@ -31,7 +31,7 @@ double first_reaching(const std::vector<double>& x, const std::vector<double>& y
 // magnitude, with its sign), magnitude (without) and failure (see failure_load).
 const std::vector<std::string>& statistic_names();
 
-// The load at which something gave way: the largest magnitude before the load first falls to 70 %
+// The load at which something gave way: the largest magnitude before the load first falls to half
 // of it or turns round, counted from a quarter of the overall peak on, so that neither ripples at
 // the start nor what swings after the fracture counts. Without such a fall the overall peak.
 double failure_load(const std::vector<double>& y);

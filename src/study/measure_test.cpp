@@ -97,6 +97,17 @@ TEST_CASE("a quotient, a sum, a unit, and the head of a file are found") {
   CHECK(std::isnan(channels.column("ref.csv:g")[1]));
 }
 
+TEST_CASE("an abscissa is called by its column or as the case names it") {
+  const Result r;
+  Channels channels(r.path.string(), r.path.string());
+  SignalSpec s;
+  s.name = "force", s.model = "a:f:1", s.x = "a:u";
+  Case c;
+  CHECK(compare_signal(s, channels, c).x_name == "u");
+  s.x_name = "travel of the ram";
+  CHECK(compare_signal(s, channels, c).x_name == "travel of the ram");
+}
+
 TEST_CASE("a reference over another unit of time than the model's is not rated") {
   const Result r;
   std::ofstream(r.path / "curve.csv") << "time [ms],g [kN]\n0,0\n1,2\n2,-6\n3,4\n";
