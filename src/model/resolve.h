@@ -210,6 +210,7 @@ class Resolver {
   std::array<Rows, 5> part_elements_;
   // node -> rigid body (number of the merged group), -1: none; filled by check_rigid_nodes
   std::vector<int> node_to_rigid_;
+  std::vector<const Card*> motion_cards_;  // of each of the prescribed motions
 };
 
 }  // namespace fabrica

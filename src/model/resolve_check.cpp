@@ -193,14 +193,9 @@ void Resolver::check_rigid_nodes() {
 
 // A node of a rigid body goes where its body goes.
 void Resolver::check_motions_of_rigid_nodes() {
-  std::size_t i = 0;
-  for (const auto& owned : model_.cards) {
-    const Card& card = *owned;
-    if (!card.schema || !card.schema->name.starts_with("BOUNDARY_PRESCRIBED_MOTION_") ||
-        card.schema->support != Support::full)
-      continue;
-    if (i >= model_.prescribed_motions.size()) break;
-    PrescribedMotion& m = model_.prescribed_motions[i++];
+  for (std::size_t i = 0; i < motion_cards_.size(); ++i) {
+    const Card& card = *motion_cards_[i];
+    PrescribedMotion& m = model_.prescribed_motions[i];
     int count = 0, first = -1;
     for (const int n : m.nodes)
       if (node_to_rigid_[n] >= 0 && ++count == 1) first = n;

@@ -209,6 +209,7 @@ void Resolver::read_prescribed_motion(const Card& card) {
     error(card, "vid", "missing-vector", "the direction of the motion is not given",
           "Give VID and *DEFINE_VECTOR");
   model_.prescribed_motions.push_back(std::move(m));
+  motion_cards_.push_back(&card);
 }
 
 }  // namespace fabrica
