@@ -11,14 +11,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void one_of(const Fields& f, const std::string& key, const std::string& value,
-            const std::vector<std::string>& allowed) {
-  if (std::find(allowed.begin(), allowed.end(), value) != allowed.end()) return;
-  std::string list;
-  for (const std::string& a : allowed) list += (list.empty() ? "" : ", ") + a;
-  f.fail(key, "'" + value + "' is not known", "Take one of: " + list);
-}
-
 SignalSpec read_signal(Fields f) {
   SignalSpec s;
   s.line = f.line();
@@ -34,7 +26,7 @@ SignalSpec read_signal(Fields f) {
   if (s.start_at && *s.start_at <= 0)
     f.fail("start_at", "is not above 0", "Give the magnitude from which contact counts as made");
   s.filter = f.text("filter", "");
-  if (!s.filter.empty()) one_of(f, "filter", s.filter, {"CFC60", "CFC180", "CFC600", "CFC1000"});
+  if (!s.filter.empty()) f.one_of("filter", s.filter, {"CFC60", "CFC180", "CFC600", "CFC1000"});
   s.reference = f.text("reference", "");
   s.reference_x = f.text("reference_x", "");
   if (const auto corridor = f.texts("corridor"); !corridor.empty()) {
@@ -43,7 +35,7 @@ SignalSpec read_signal(Fields f) {
     s.low = corridor[0], s.high = corridor[1];
   }
   s.rating = f.texts("rating");
-  for (const std::string& r : s.rating) one_of(f, "rating", r, {"cora", "iso18571"});
+  for (const std::string& r : s.rating) f.one_of("rating", r, {"cora", "iso18571"});
   if (!s.rating.empty() && !s.x.empty())
     f.fail("rating", "rates curves over time, and x is given",
            "Rate the curve over time, or compare the loop by its corridor");
@@ -64,7 +56,7 @@ CheckSpec read_check(Fields f, bool limit) {
   c.statistic = f.text("statistic", "last");
   if (single && f.has("statistic"))
     f.fail("statistic", "is given for a single number", "Remove it");
-  one_of(f, "statistic", c.statistic, statistic_names());
+  f.one_of("statistic", c.statistic, statistic_names());
   if (limit) {
     c.least = f.maybe_number("least"), c.most = f.maybe_number("most");
     if (!c.least && !c.most) f.fail("", "a limit without a bound", "Give least, most or both");
@@ -109,7 +101,7 @@ void read_what_runs(Fields& f, Case& c) {
   c.end_time = f.number("end_time", 0);
   if (c.end_time < 0) f.fail("end_time", "is negative", "Give the time at which the run ends");
   c.time_unit = f.text("time_unit", "ms");
-  one_of(f, "time_unit", c.time_unit, {"ms", "s"});
+  f.one_of("time_unit", c.time_unit, {"ms", "s"});
   c.allow_unsupported = f.flag("allow_unsupported", false);
   c.slow = f.flag("slow", false);
   c.parameters = literals(f.table("parameters"));

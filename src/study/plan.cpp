@@ -133,10 +133,7 @@ OutputSpec read_output(Fields f) {
   o.measure.over = f.text("over", "");
   o.measure.range = f.interval("range");
   o.measure.statistic = f.text("statistic", "last");
-  const std::vector<std::string>& known = statistic_names();
-  if (std::find(known.begin(), known.end(), o.measure.statistic) == known.end())
-    f.fail("statistic", "'" + o.measure.statistic + "' is not known",
-           fmt::format("Take one of {}", fmt::join(known, ", ")));
+  f.one_of("statistic", o.measure.statistic, statistic_names());
   o.reference = f.text("reference", "");
   f.finish();
   return o;

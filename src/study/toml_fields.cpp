@@ -178,4 +178,12 @@ void Fields::fail(const std::string& key, const std::string& message,
   throw StudyError(file_, line(key), prefix_ + key, message, remedy);
 }
 
+void Fields::one_of(const std::string& key, const std::string& value,
+                    const std::vector<std::string>& allowed) const {
+  if (std::find(allowed.begin(), allowed.end(), value) != allowed.end()) return;
+  std::string list;
+  for (const std::string& a : allowed) list += (list.empty() ? "" : ", ") + a;
+  fail(key, "'" + value + "' is not known", "Take one of: " + list);
+}
+
 }  // namespace fabrica::study

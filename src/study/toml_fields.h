@@ -56,6 +56,9 @@ class Fields {
   const std::string& file() const { return file_; }
   [[noreturn]] void fail(const std::string& key, const std::string& message,
                          const std::string& remedy) const;
+  // Fails where the value of a key is none of those allowed.
+  void one_of(const std::string& key, const std::string& value,
+              const std::vector<std::string>& allowed) const;
 
  private:
   const toml::node* find(const std::string& key);
