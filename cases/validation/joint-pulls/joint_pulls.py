@@ -8,11 +8,11 @@ pulled at its frame's origin along x, y, z of the first bone's frame, both ways,
 stays for 10. Light damping (0.2 / ms). `fabrica joints` measures how far the surfaces come apart. Prints a table; exit status 1
 if a joint comes apart by more than 3 mm or a run does not reach its end.
 """
-import argparse
-import csv
 import pathlib
-import subprocess
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import joint_rig  # noqa: E402
 
 # name: held, pulled, others that belong to the joint
 JOINTS = {
@@ -42,66 +42,30 @@ JOINTS = {
 }
 
 
-def rig(held, pulled, others, axis, sign, force):
-    with_bones = ", ".join(f'"{b}"' for b in [pulled, *others])
-    return f"""end_time     = 20
-output_every = 0.2
-states_every = 1
-damping      = 0.2
-[[pot]]
-name   = "held"
-bones  = ["{held}"]
-toward = [0, 0, 1]
-depth  = 2000
-[[pot]]
-name   = "pulled"
-bones  = ["{pulled}"]
-toward = [0, 0, 1]
-depth  = 2000
-pivot_at = [0, 0, 0]
-free   = [{", ".join(f'"{d}"' for d in "xyz" if d != axis)}]
-load   = [{{ along = "{axis}", force = [[0, 0], [10, {sign * force / 1000}], [20, {sign * force / 1000}]] }}]
-[[specimen]]
-bone = "{held}"
-with = [{with_bones}]
-"""
-
-
-def run(fabrica, folder, name, joint, axis, sign, force):
+def pull(fabrica, folder, name, joint, axis, sign, force):
+    """How far the joint came apart and the bone moved in the direction of the pull [mm], and why the run ended early."""
+    timing = "end_time     = 20\noutput_every = 0.2\nstates_every = 1\ndamping      = 0.2"
+    free = ", ".join(f'"{d}"' for d in "xyz" if d != axis)
+    kilonewtons = sign * force / 1000
+    support = (f'free   = [{free}]\n'
+               f'load   = [{{ along = "{axis}", force = [[0, 0], [10, {kilonewtons}], [20, {kilonewtons}]] }}]')
     stem = folder / f"{name}_{'+' if sign > 0 else '-'}{axis}"
-    stem.with_suffix(".toml").write_text(rig(*joint, axis, sign, force))
-    deck = stem.with_suffix(".k")
-    subprocess.run([fabrica, "body", "--trial", stem.with_suffix(".toml"), "--out", deck, "--quiet"],
-                   check=True, capture_output=True, text=True)
-    out = subprocess.run([fabrica, "run", deck, "--out", stem, "--threads", "1", "--quiet"], capture_output=True, text=True)
-    if out.returncode != 0:
-        ending = [line for line in out.stdout.splitlines() if line.startswith("ending")]
-        return None, None, (ending or ["run failed"])[0]
-    table = stem.with_suffix(".csv")
-    subprocess.run([fabrica, "joints", stem, "--joints", folder / f"{deck.stem}_joints.csv", "--csv", table],
-                   check=True, capture_output=True, text=True)
-    rows = list(csv.DictReader(table.open()))
-    moved = list(csv.DictReader((stem / "csv" / "rbdout.csv").open()))[-1]
-    shift = abs(float(moved[f"global_d{axis}:8000002"]))
-    return max(float(r["apart"]) for r in rows), shift, ""
+    apart, failed = joint_rig.run(fabrica, stem, joint_rig.rig(timing, *joint, "pulled", support))
+    if failed:
+        return None, None, failed
+    last = joint_rig.histories(stem / "csv" / "rbdout.csv")[-1]
+    return apart, abs(float(last[f"global_d{axis}:8000002"])), ""
 
 
 def main():
-    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    p.add_argument("fabrica")
-    p.add_argument("out", type=pathlib.Path)
-    p.add_argument("joints", nargs="*", help="of the list; default all")
-    p.add_argument("--force", type=float, default=50, help="N")
-    a = p.parse_args()
-    a.out.mkdir(parents=True, exist_ok=True)
-    for name in a.joints:
-        if name not in JOINTS:
-            p.error(f"joint {name} is unknown; there are {', '.join(JOINTS)}")
+    parser, read = joint_rig.arguments(__doc__, JOINTS)
+    parser.add_argument("--force", type=float, default=50, help="N")
+    a = read()
     bad = 0
     print("| joint | apart, the widest of six [mm] | moved in the direction of the pull, -x +x -y +y -z +z [mm] | remark |")
     print("| --- | --- | --- | --- |")
-    for name in a.joints or JOINTS:
-        results = [run(a.fabrica, a.out, name, JOINTS[name], axis, sign, a.force) for axis in "xyz" for sign in (-1, 1)]
+    for name in a.joints:
+        results = [pull(a.fabrica, a.out, name, JOINTS[name], axis, sign, a.force) for axis in "xyz" for sign in (-1, 1)]
         failed = [r[2] for r in results if r[2]]
         apart = max((r[0] for r in results if r[0] is not None), default=float("nan"))
         moves = " ".join("-" if r[1] is None else f"{r[1]:.1f}" for r in results)

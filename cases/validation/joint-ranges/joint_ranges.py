@@ -13,12 +13,14 @@ and the kinetic energy T:
 as means over fifths of the range, against the motion where positive; a positive angle of flexion turns about +y (knee and elbow about
 -y, so that they bend). Exit status 1 if a run does not reach its end or a joint comes apart by more than 3 mm.
 """
-import argparse
 import csv
 import math
 import pathlib
-import subprocess
 import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "cases/validation"))
+import joint_rig  # noqa: E402
 
 # joint: held, turned, others, axis, sign, joint and coordinate of the table
 JOINTS = {
@@ -37,41 +39,16 @@ RATE = 2  # degrees / ms
 START = 5  # ms; twice that and half the rate where other bones are carried along
 
 
-def limits(root, joint, coordinate):
-    table = [line for line in (root / "data/anatomy/joint_axes.csv").read_text().splitlines() if not line.startswith("#")]
+def limits(joint, coordinate):
+    table = [line for line in (ROOT / "data/anatomy/joint_axes.csv").read_text().splitlines() if not line.startswith("#")]
     for row in csv.DictReader(table):
         if row["joint"] == joint and row["coordinate"] == coordinate:
             return float(row["low"]), float(row["high"])
     raise SystemExit(f"data/anatomy/joint_axes.csv has no {joint} {coordinate}")
 
 
-def rig(held, turned, others, axis, radians, time, start):
-    bones = ", ".join(f'"{b}"' for b in [turned, *others])
-    rate = radians / (time - start / 2)
-    return f"""end_time     = {time:.2f}
-output_every = {time / 200:.4f}
-states_every = {time / 20:.4f}
-[[pot]]
-name   = "held"
-bones  = ["{held}"]
-toward = [0, 0, 1]
-depth  = 2000
-[[pot]]
-name   = "turned"
-bones  = ["{turned}"]
-toward = [0, 0, 1]
-depth  = 2000
-pivot_at = [0, 0, 0]
-free   = ["x", "y", "z"]
-motion = {{ along = "{axis}", velocity = [[0, 0], [{start}, {rate:.6f}], [{time:.2f}, {rate:.6f}]] }}
-[[specimen]]
-bone = "{held}"
-with = [{bones}]
-"""
-
-
 def torques(folder, radians, time, start):
-    rows = list(csv.DictReader((folder / "csv/glstat.csv").open()))
+    rows = joint_rig.histories(folder / "csv/glstat.csv")
     rate = abs(radians) / (time - start / 2)
     work = [float(r["external_work"]) - float(r["kinetic_energy"]) for r in rows]
 
@@ -88,46 +65,32 @@ def torques(folder, radians, time, start):
     return out
 
 
-def run(fabrica, folder, name, joint, degrees):
+def turn(fabrica, folder, name, joint, degrees):
+    """Torques [N m] over fifths of the way, how far the joint came apart [mm], and why the run ended early."""
     held, turned, others, axis, sign = joint[:5]
     radians = sign * math.radians(degrees)
     slower = 2 if others else 1
     start = START * slower
     time = abs(degrees) / RATE * slower + start / 2 + 2
+    rate = radians / (time - start / 2)
+    timing = f"end_time     = {time:.2f}\noutput_every = {time / 200:.4f}\nstates_every = {time / 20:.4f}"
+    support = ('free   = ["x", "y", "z"]\n'
+               f'motion = {{ along = "{axis}", velocity = [[0, 0], [{start}, {rate:.6f}], [{time:.2f}, {rate:.6f}]] }}')
     stem = folder / f"{name.replace(' ', '_')}_{degrees:+g}"
-    stem.with_suffix(".toml").write_text(rig(held, turned, others, axis, radians, time, start))
-    deck = stem.with_suffix(".k")
-    subprocess.run([fabrica, "body", "--trial", stem.with_suffix(".toml"), "--out", deck, "--quiet"],
-                   check=True, capture_output=True, text=True)
-    out = subprocess.run([fabrica, "run", deck, "--out", stem, "--threads", "1", "--quiet"], capture_output=True, text=True)
-    if out.returncode != 0:
-        return None, None, ([line for line in out.stdout.splitlines() if line.startswith("ending")] or ["run failed"])[0]
-    table = stem.with_suffix(".csv")
-    subprocess.run([fabrica, "joints", stem, "--joints", folder / f"{deck.stem}_joints.csv", "--csv", table],
-                   check=True, capture_output=True, text=True)
-    apart = max(float(r["apart"]) for r in csv.DictReader(table.open()))
-    return torques(stem, radians, time, start), apart, ""
+    apart, failed = joint_rig.run(fabrica, stem, joint_rig.rig(timing, held, turned, others, "turned", support))
+    return (None if failed else torques(stem, radians, time, start)), apart, failed
 
 
 def main():
-    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    p.add_argument("fabrica")
-    p.add_argument("out", type=pathlib.Path)
-    p.add_argument("joints", nargs="*", help="of the list; default all")
-    a = p.parse_args()
-    a.out.mkdir(parents=True, exist_ok=True)
-    root = pathlib.Path(__file__).resolve().parents[3]
-    for name in a.joints:
-        if name not in JOINTS:
-            p.error(f"joint {name} is unknown; there are {', '.join(JOINTS)}")
+    a = joint_rig.arguments(__doc__, JOINTS)[1]()
     bad = 0
     print("| joint | to [degrees] | torque over fifths of the way [N m] | apart [mm] | remark |")
     print("| --- | --- | --- | --- | --- |")
-    for name in a.joints or JOINTS:
-        for degrees in limits(root, *JOINTS[name][5:]):
+    for name in a.joints:
+        for degrees in limits(*JOINTS[name][5:]):
             if degrees == 0:
                 continue
-            torque, apart, failed = run(a.fabrica, a.out, name, JOINTS[name], degrees)
+            torque, apart, failed = turn(a.fabrica, a.out, name, JOINTS[name], degrees)
             bad += bool(failed) or not apart <= 3
             curve = "-" if torque is None else " ".join(f"{t:.2f}" for t in torque)
             print(f"| {name} | {degrees:g} | {curve} | {'-' if apart is None else f'{apart:.2f}'} | {failed} |", flush=True)
