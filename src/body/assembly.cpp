@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "body/id_rows.h"
+#include "body/cards.h"
 #include "body/materials.h"
 #include "body/mesh/shell_layer.h"
 
@@ -54,28 +54,23 @@ class Assembly {
   static constexpr double tie_reach = 30;  // [mm]
 
   RegionIds& ids(Region region) { return ids_[std::size_t(region)]; }
-  Card& titled(const char* keyword, const std::string& title) {
-    Card& c = builder_.add_card(keyword);
-    c.options = {"TITLE"};
-    c.title = title;
-    return c;
-  }
-
   // bricks with one point; shells lie under the surface of the bone (NLOC 1), each with its own
   // thickness
   void sections() {
-    titled("SECTION_SOLID", "bricks").set("secid", double(solid_section)).set("elform", 1);
-    titled("SECTION_SOLID", "bricks that bend, integrated in full")
+    titled(builder_, "SECTION_SOLID", "bricks")
+        .set("secid", double(solid_section))
+        .set("elform", 1);
+    titled(builder_, "SECTION_SOLID", "bricks that bend, integrated in full")
         .set("secid", double(bending_section))
         .set("elform", -1);
-    Card& shell = titled("SECTION_SHELL", "cortex under the surface of the bone");
+    Card& shell = titled(builder_, "SECTION_SHELL", "cortex under the surface of the bone");
     shell.set("secid", double(bone_shell_section))
         .set("elform", 2)
         .set("shrf", 0.8333)
         .set("nip", 3)
         .set("nloc", 1);
     for (const char* t : {"t1", "t2", "t3", "t4"}) shell.set(t, 1);
-    Card& h = titled("HOURGLASS", "stiffness form for bone and cartilage");
+    Card& h = titled(builder_, "HOURGLASS", "stiffness form for bone and cartilage");
     h.set("hgid", stiff_hourglass).set("ihq", 5).set("qm", 0.1);
   }
 
@@ -183,13 +178,13 @@ class Assembly {
     const Id id = ++last_section_;
     switch (p.kind) {
       case PieceKind::brick:
-        titled("SECTION_SOLID", p.name)
+        titled(builder_, "SECTION_SOLID", p.name)
             .set("secid", double(id))
             .set("elform", p.formulation ? p.formulation : 1);
         break;
       case PieceKind::shell:
       case PieceKind::membrane: {
-        Card& c = titled("SECTION_SHELL", p.name);
+        Card& c = titled(builder_, "SECTION_SHELL", p.name);
         c.set("secid", double(id))
             .set("elform", p.formulation                ? p.formulation
                            : p.kind == PieceKind::shell ? 2
@@ -199,10 +194,13 @@ class Assembly {
         break;
       }
       case PieceKind::truss:
-        titled("SECTION_BEAM", p.name).set("secid", double(id)).set("elform", 3).set("a3", p.area);
+        titled(builder_, "SECTION_BEAM", p.name)
+            .set("secid", double(id))
+            .set("elform", 3)
+            .set("a3", p.area);
         break;
       case PieceKind::spring:
-        titled("SECTION_DISCRETE", p.name).set("secid", double(id)).set("dro", 0);
+        titled(builder_, "SECTION_DISCRETE", p.name).set("secid", double(id)).set("dro", 0);
         break;
     }
     return id;
@@ -257,7 +255,9 @@ class Assembly {
   // a light viscous damper beside each spring
   void dampers(const Piece& p, const std::vector<Id>& node) {
     const Id section = ++last_section_;
-    titled("SECTION_DISCRETE", p.name + ".damper").set("secid", double(section)).set("dro", 0);
+    titled(builder_, "SECTION_DISCRETE", p.name + ".damper")
+        .set("secid", double(section))
+        .set("dro", 0);
     const Id material = materials_.add(
         p.name + ".damper", {"MAT_DAMPER_VISCOUS", {{"dc", p.damping}}, "", {}, p.source, ""});
     const Id pid =
@@ -269,7 +269,7 @@ class Assembly {
   }
 
   Id segment_set(const std::string& title, const SurfacePatch& patch) {
-    Card& c = titled("SET_SEGMENT", title);
+    Card& c = titled(builder_, "SET_SEGMENT", title);
     c.set("sid", double(++last_set_));
     for (const auto& q : patch.quads)
       c.add_row({double(id_of(q[0])), double(id_of(q[1])), double(id_of(q[2])), double(id_of(q[3])),
@@ -290,7 +290,7 @@ class Assembly {
 
   void tied(const Tie& tie) {
     if (tie.a.empty() || tie.b.quads.empty()) return;
-    Card& set = titled("SET_NODE_LIST", tie.name + ".nodes");
+    Card& set = titled(builder_, "SET_NODE_LIST", tie.name + ".nodes");
     const Id nodes = ++last_set_;
     set.set("sid", double(nodes));
     add_ids(set, tie.a.size(), [&](std::size_t i) { return id_of(tie.a[i]); });
@@ -304,7 +304,7 @@ class Assembly {
   }
 
   void part_set() {
-    Card& set = titled("SET_PART_LIST", "whole body");
+    Card& set = titled(builder_, "SET_PART_LIST", "whole body");
     out_.all_parts_set = ++last_set_;
     set.set("sid", double(out_.all_parts_set));
     add_ids(set, out_.parts.size(), [&](std::size_t i) { return out_.parts[i].id; });

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "body/cards.h"
 #include "body/mesh/shell_layer.h"
 
 namespace fabrica::body {
@@ -17,7 +18,7 @@ Mat3d axes_of(const RigFixture& fixture) {
   Point x = fixture.axis;
   if (fixture.shape == RigFixture::ball)  // any direction across
     x = cross(std::abs(z.x) < 0.7 ? Point{1, 0, 0} : Point{0, 1, 0}, z);
-  x = (1 / norm(x)) * x;
+  x = unit(x);
   const Point y = cross(z, x);
   return {{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}};
 }
@@ -101,8 +102,7 @@ MountedPart add_fixture(const Rig& rig, const RigFixture& fixture, const Body& b
   double height = std::numeric_limits<double>::lowest();
   std::vector<std::int64_t> parts;
   for (const BoneName& name : fixture.touches) {
-    const int b = find_bone(body.bones, name.bone, name.side);
-    if (b < 0) throw BodyError(fmt::format("{}: the body has no '{}'", rig.path, name.text));
+    const int b = need_bone(rig, body, name);
     bool rigid = false;
     for (const PartEntry& part : assembled.parts)
       if (part.bone == b) parts.push_back(part.id), rigid = rigid || part.rigid;
@@ -121,7 +121,7 @@ MountedPart add_fixture(const Rig& rig, const RigFixture& fixture, const Body& b
       cards.rigid_part(fixture.name, fixture.mass / mesh.volume(), fixture.support,
                        cards.curves(fixture.name, fixture.support));
   const std::int64_t face = fixture.pad ? add_pad(fixture, assembled, builder, cards) : id;
-  cards.add(mesh, id, face, place);
+  add_shape(mesh, id, face, place, assembled, builder);
   Card& c = builder.add_card("CONTACT_AUTOMATIC_SURFACE_TO_SURFACE");
   c.options = {"ID"};
   c.set("cid", double(id)).set("heading", fixture.name);

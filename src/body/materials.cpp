@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <sstream>
 
+#include "body/cards.h"
+
 namespace fabrica::body {
 
 Materials::Materials(Builder& builder, bool fracture)
@@ -13,20 +15,14 @@ Materials::Materials(Builder& builder, bool fracture)
 }
 
 Card& Materials::card(const std::string& keyword, const std::string& title) {
-  Card& card = builder_.add_card(keyword);
-  card.options = {"TITLE"};
-  card.title = title;
+  Card& card = titled(builder_, keyword.c_str(), title);
   card.set("mid", double(++last_material_));
   return card;
 }
 
 std::int64_t Materials::next_curve(const std::string& title,
                                    const std::vector<std::pair<double, double>>& points) {
-  Card& curve = builder_.add_card("DEFINE_CURVE");
-  curve.options = {"TITLE"};
-  curve.title = title;
-  curve.set("lcid", double(++last_curve_));
-  for (const auto& [x, y] : points) curve.add_row({x, y});
+  add_curve(builder_, ++last_curve_, title, points);
   return last_curve_;
 }
 

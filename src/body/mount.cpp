@@ -7,31 +7,19 @@
 #include <cmath>
 #include <limits>
 
+#include "body/cards.h"
 #include "body/fixture.h"
 #include "body/mesh/quality.h"
 #include "body/rig_cards.h"
-#include "body/shapes.h"
 
 namespace fabrica::body {
 namespace {
-
-int need_bone(const Rig& rig, const Body& body, const BoneName& name) {
-  const int index = find_bone(body.bones, name.bone, name.side);
-  if (index < 0)
-    throw BodyError(
-        fmt::format("{}: the body has no '{}'; write the side where a bone has two: "
-                    "right.{}",
-                    rig.path, name.text, name.bone));
-  return index;
-}
 
 Point mean(const std::vector<Point>& points) {
   Point sum{0, 0, 0};
   for (const Point& p : points) sum += p;
   return (1.0 / double(points.size())) * sum;
 }
-
-Point unit(const Point& p) { return (1 / norm(p)) * p; }
 
 // a direction of the bone's frame in the body; a left bone mirrors the right one, and so do its
 // directions
@@ -181,9 +169,10 @@ class Mounting {
   static RigidMass mass_of(const RigPot& pot, const PlacedBone& bone, const std::vector<int>& held,
                            const Point& pivot) {
     std::vector<double> volume(bone.nodes.size(), 0);
-    for (const auto& brick : bone.mesh.bricks)
-      for (const int n : brick)
-        volume[std::size_t(n)] += volume_of(corners_of(bone.nodes, brick)) / 8;
+    for (const auto& brick : bone.mesh.bricks) {
+      const double share = volume_of(corners_of(bone.nodes, brick)) / 8;
+      for (const int n : brick) volume[std::size_t(n)] += share;
+    }
     RigidMass mass{0, pivot, {}};
     for (const int n : held)
       mass.add(bone_density * volume[std::size_t(n)], bone.nodes[std::size_t(n)]);
@@ -205,7 +194,7 @@ class Mounting {
     const std::int64_t id = cards_.rigid_part(title, brick_density, pot.support, curves,
                                               mass_of(pot, bone, held, pivot));
     // a brick of 2 mm at the pivot: the rigid part that the nodes of the pot join
-    cards_.add(box_mesh({2, 2, 2}, 2), id, id, {identity3<double>(), pivot});
+    add_shape(box_mesh({2, 2, 2}, 2), id, id, {identity3<double>(), pivot}, assembled_, builder_);
     builder_.add_card("CONSTRAINED_EXTRA_NODES_SET").add_row({double(id), double(node_set), 0});
     section(id, node_set, title, held, b);
     mounted_.push_back({id, title, pivot});
@@ -246,6 +235,16 @@ class Mounting {
 };
 
 }  // namespace
+
+int need_bone(const Rig& rig, const Body& body, const BoneName& name) {
+  const int index = find_bone(body.bones, name.bone, name.side);
+  if (index < 0)
+    throw BodyError(
+        fmt::format("{}: the body has no '{}'; write the side where a bone has two: "
+                    "right.{}",
+                    rig.path, name.text, name.bone));
+  return index;
+}
 
 std::vector<int> potted_nodes(const RigPot& pot, const PlacedBone& bone) {
   // a left bone mirrors the right one, and so does the direction of its end

@@ -9,6 +9,9 @@
 
 namespace fabrica::body {
 
+// Index of a bone that a rig names; throws BodyError where the body has none.
+int need_bone(const Rig& rig, const Body& body, const BoneName& name);
+
 // Nodes of a bone that a pot holds.
 std::vector<int> potted_nodes(const RigPot& pot, const PlacedBone& bone);
 

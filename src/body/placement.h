@@ -25,6 +25,7 @@ inline Mat3d rotation_about(const Point& a, double angle) {
            {v * a.x * a.z - s * a.y, v * a.y * a.z + s * a.x, c + v * a.z * a.z}}};
 }
 
+inline Point unit(const Point& p) { return (1 / norm(p)) * p; }
 inline Point mirror(const Point& p) { return {p.x, -p.y, p.z}; }
 // the placement of the bone of the other side: t_y -> -t_y, R -> M R M, M = diag(1, -1, 1)
 inline Placement mirror(const Placement& p) {

@@ -100,7 +100,7 @@ RigSupport read_support(RigTable& table) {
 
 Point direction(RigTable& table, const std::string& key, const Point& value) {
   if (norm(value) == 0) table.fail(key, "must be a direction such as [0, 0, 1]");
-  return (1 / norm(value)) * value;
+  return unit(value);
 }
 
 RigPot read_pot(RigTable table) {
@@ -250,10 +250,8 @@ bool Rig::tests(const PlacedBone& bone) const {
 }
 
 bool Rig::has(const BoneName& name) const {
-  for (const RigSpecimen& specimen : specimens)
-    for (const BoneName& bone : specimen.bones())
-      if (bone.text == name.text) return true;
-  return false;
+  const std::vector<std::string> all = bones();
+  return std::find(all.begin(), all.end(), name.text) != all.end();
 }
 
 Rig read_rig(const std::string& path) {

@@ -1,6 +1,6 @@
 #include "body/rig_cards.h"
 
-#include "body/id_rows.h"
+#include "body/cards.h"
 
 namespace fabrica::body {
 namespace {
@@ -34,9 +34,7 @@ RigCards::RigCards(AssembledBody& assembled, Builder& builder)
 
 std::int64_t RigCards::set(const char* keyword, const std::string& title,
                            const std::vector<std::int64_t>& ids) {
-  Card& card = builder_.add_card(keyword);
-  card.options = {"TITLE"};
-  card.title = title;
+  Card& card = titled(builder_, keyword, title);
   card.set("sid", double(++assembled_.next_set));
   add_ids(card, ids.size(), [&](std::size_t i) { return ids[i]; });
   return assembled_.next_set;
@@ -44,11 +42,7 @@ std::int64_t RigCards::set(const char* keyword, const std::string& title,
 
 std::int64_t RigCards::curve(const std::string& title,
                              const std::vector<std::pair<double, double>>& points) {
-  Card& curve = builder_.add_card("DEFINE_CURVE");
-  curve.options = {"TITLE"};
-  curve.title = title;
-  curve.set("lcid", double(++last_curve_));
-  for (const auto& [x, y] : points) curve.add_row({x, y});
+  add_curve(builder_, ++last_curve_, title, points);
   return last_curve_;
 }
 
@@ -65,9 +59,7 @@ std::int64_t RigCards::rigid_part(const std::string& title, double density,
   const double id = double(assembled_.next_part++);
   std::array<int, 6> held{};
   for (std::size_t d = 0; d < 6; ++d) held[d] = support.holds(d);
-  Card& law = builder_.add_card("MAT_RIGID");
-  law.options = {"TITLE"};
-  law.title = title;
+  Card& law = titled(builder_, "MAT_RIGID", title);
   law.set("mid", id).set("ro", density).set("e", 70).set("pr", 0.3).set("cmo", 1);
   law.set("con1", support_code(held[0], held[1], held[2]));
   law.set("con2", support_code(held[3], held[4], held[5]));
@@ -103,18 +95,6 @@ std::int64_t RigCards::rigid_part(const std::string& title, double density,
         .set("vy", support.velocity.y)
         .set("vz", support.velocity.z);
   return std::int64_t(id);
-}
-
-void RigCards::add(const ShapeMesh& mesh, std::int64_t part, std::int64_t pad,
-                   const Placement& placement) {
-  const std::int64_t first = assembled_.next_node;
-  for (const Point& p : mesh.nodes) builder_.add_node(assembled_.next_node++, placement(p));
-  for (std::size_t e = 0; e < mesh.bricks.size(); ++e) {
-    std::array<std::int64_t, 8> corner{};
-    for (std::size_t k = 0; k < 8; ++k) corner[k] = first + mesh.bricks[e][k];
-    builder_.add_solid(assembled_.next_element++,
-                       e + mesh.pad_bricks < mesh.bricks.size() ? part : pad, corner.data(), 8);
-  }
 }
 
 }  // namespace fabrica::body

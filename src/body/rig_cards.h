@@ -7,7 +7,6 @@
 
 #include "body/assembly.h"
 #include "body/rig.h"
-#include "body/shapes.h"
 
 namespace fabrica::body {
 
@@ -36,8 +35,6 @@ class RigCards {
   // a part of rigid material [kg/mm3] with its motion and loads; its number
   std::int64_t rigid_part(const std::string& title, double density, const RigSupport& support,
                           const Curves& curves, const std::optional<RigidMass>& mass = {});
-  // nodes and bricks of a shape, those of its pad as another part
-  void add(const ShapeMesh& mesh, std::int64_t part, std::int64_t pad, const Placement& placement);
 
  private:
   AssembledBody& assembled_;

@@ -63,10 +63,33 @@ Point mean_of(const PlacedBone& bone, const std::vector<int>& nodes) {
 // the bones of a rig, laid into it
 Body specimens_of(const Rig& rig) {
   BodyOptions options;
-  options.only = rig.bones(), options.joints = false;
+  options.only = rig.bones(), options.joints = rig.joined();
   Body body = build_body(options);
   place_specimens(rig, body);
   return body;
+}
+
+// bones laid into a rig and mounted, as a model
+struct Mounted {
+  explicit Mounted(const Rig& rig) : body(specimens_of(rig)) {
+    Diagnostics diagnostics;
+    Builder builder(diagnostics);
+    AssembledBody assembled = assemble(body, {}, builder);
+    parts = mount(rig, body, assembled, builder);
+    model = builder.finish();
+    for (const Diagnostic& d : diagnostics.list()) INFO(diagnostics.format(d));
+    REQUIRE_FALSE(diagnostics.has_errors());
+  }
+  Body body;
+  std::vector<MountedPart> parts;
+  std::unique_ptr<Model> model;
+};
+
+// the good rig with other lines in place of some
+Rig rig_with(const std::vector<std::pair<std::string, std::string>>& changes) {
+  std::string text = good;
+  for (const auto& [from, to] : changes) text.replace(text.find(from), from.size(), to);
+  return rig_of(text);
 }
 
 }  // namespace
@@ -138,18 +161,14 @@ TEST_CASE("a specimen lies in the rig with its pots on the x axis, flat, unstrai
 
 TEST_CASE("pots become rigid bodies whose section holds every element beside them") {
   const Rig rig = rig_of(good);
-  Body body = specimens_of(rig);
-  Diagnostics diagnostics;
-  Builder builder(diagnostics);
-  AssembledBody assembled = assemble(body, {}, builder);
-  const auto pots = mount(rig, body, assembled, builder);
-  const auto model = builder.finish();
-  REQUIRE_FALSE(diagnostics.has_errors());
+  const Mounted mounted(rig);
+  const auto& pots = mounted.parts;
+  const auto& model = mounted.model;
   REQUIRE(pots.size() == 2);
   CHECK(pots[0].name == "right.rib5 posterior");
   REQUIRE(model->cross_sections.size() == 2);
   const CrossSection& section = model->cross_sections[0];
-  CHECK(section.nodes.size() == potted_nodes(rig.pots[0], body.bones[0]).size());
+  CHECK(section.nodes.size() == potted_nodes(rig.pots[0], mounted.body.bones[0]).size());
   // bricks with some but not all corners in the pot, counted from the mesh of the model
   std::vector<char> inside(model->nodes.size(), 0);
   for (const int n : section.nodes) inside[n] = 1;
@@ -165,47 +184,31 @@ TEST_CASE("pots become rigid bodies whose section holds every element beside the
 }
 
 TEST_CASE("a pot turns about its pivot, with the mass of the bone in it") {
-  const Rig rig = rig_of(good);
-  const Rig shifted = [] {
-    std::string text = good;
-    text.replace(text.find("depth = 20"), 10, "depth = 20\npivot = 8\nmass = 0.5");
-    return rig_of(text);
-  }();
   std::vector<double> mass, distance;
-  for (const Rig& r : {rig, shifted}) {
-    Body body = specimens_of(r);
-    Diagnostics diagnostics;
-    Builder builder(diagnostics);
-    AssembledBody assembled = assemble(body, {}, builder);
-    const auto parts = mount(r, body, assembled, builder);
-    const auto model = builder.finish();
-    REQUIRE_FALSE(diagnostics.has_errors());
-    const Part& pot = model->parts[std::size_t(model->part_index(parts[0].id))];
+  for (const Rig& r :
+       {rig_of(good), rig_with({{"depth = 20", "depth = 20\npivot = 8\nmass = 0.5"}})}) {
+    const Mounted mounted(r);
+    const Point pivot = mounted.parts[0].pivot;
+    const Part& pot =
+        mounted.model->parts[std::size_t(mounted.model->part_index(mounted.parts[0].id))];
     REQUIRE(pot.inertia);
-    CHECK(norm(pot.inertia->center - parts[0].pivot) < 1e-9);
+    CHECK(norm(pot.inertia->center - pivot) < 1e-9);
     mass.push_back(pot.inertia->mass);
     // how far the pivot lies behind the open face, along the direction of the pot
-    const PlacedBone& rib = body.bones[0];
+    const PlacedBone& rib = mounted.body.bones[0];
     const Point toward = rib.placement.R * r.pots[0].toward;
     double far = -1e30;
     for (const Point& p : rib.nodes) far = std::max(far, dot(p, toward));
-    distance.push_back(dot(parts[0].pivot, toward) - (far - r.pots[0].depth));
+    distance.push_back(dot(pivot, toward) - (far - r.pots[0].depth));
   }
   CHECK(mass[0] > 0);
   CHECK(mass[1] - mass[0] == doctest::Approx(0.5));
   CHECK(distance[1] == doctest::Approx(8));
 
-  std::string text = good;
-  text.replace(text.find("depth = 20"), 10, "depth = 20\npivot_at = [3, 4, 5]");
-  text.replace(text.find("end_time = 10"), 13, "end_time = 10\ndamping = 0.1");
-  const Rig at = rig_of(text);
-  Body body = specimens_of(at);
-  Diagnostics diagnostics;
-  Builder builder(diagnostics);
-  AssembledBody assembled = assemble(body, {}, builder);
-  const auto parts = mount(at, body, assembled, builder);
-  CHECK(norm(parts[0].pivot - body.bones[0].placement(Point{3, 4, 5})) < 1e-9);
-  CHECK(norm(parts[0].pivot - Point{7, 8, 9}) < 1e-9);  // where the specimen lays it
+  const Mounted at(rig_with({{"depth = 20", "depth = 20\npivot_at = [3, 4, 5]"},
+                             {"end_time = 10", "end_time = 10\ndamping = 0.1"}}));
+  CHECK(norm(at.parts[0].pivot - at.body.bones[0].placement(Point{3, 4, 5})) < 1e-9);
+  CHECK(norm(at.parts[0].pivot - Point{7, 8, 9}) < 1e-9);  // where the specimen lays it
 }
 
 namespace {
@@ -217,23 +220,6 @@ std::string with_fixture(const std::string& shape) {
          "start_velocity = [0, 0, -3]\n";
 }
 
-struct Fitted {
-  std::unique_ptr<Model> model;
-  std::int64_t id = 0;
-  Point centre;
-  std::vector<Point> bone;
-};
-Fitted fit(const Rig& rig) {
-  Body body = specimens_of(rig);
-  Diagnostics diagnostics;
-  Builder builder(diagnostics);
-  AssembledBody assembled = assemble(body, {}, builder);
-  const auto parts = mount(rig, body, assembled, builder);
-  Fitted fitted{builder.finish(), parts.back().id, parts.back().pivot, body.bones[0].nodes};
-  for (const Diagnostic& d : diagnostics.list()) INFO(diagnostics.format(d));
-  REQUIRE_FALSE(diagnostics.has_errors());
-  return fitted;
-}
 // nodes of the elements of a part
 std::vector<Point> nodes_of(const Model& model, std::int64_t part) {
   std::vector<Point> out;
@@ -249,28 +235,29 @@ std::vector<Point> nodes_of(const Model& model, std::int64_t part) {
 TEST_CASE("a fixture stands clear of the bone by its gap and the reach of the shells") {
   // over the middle of the rib, as high as the bone lets it
   const std::string at = "at = [77, -40, 500]";
-  const Fitted box = fit(rig_of(with_fixture("shape = \"box\"\nsize = [80, 120, 10]\n" + at)));
+  const Mounted box(rig_of(with_fixture("shape = \"box\"\nsize = [80, 120, 10]\n" + at)));
   double top = -1e30;
-  for (const Point& p : box.bone)
+  for (const Point& p : box.body.bones[0].nodes)
     if (std::abs(p.y + 40) < 40 && std::abs(p.x - 77) < 60) top = std::max(top, p.z);
   double low = 1e30;
-  for (const Point& p : nodes_of(*box.model, box.id)) low = std::min(low, p.z);
+  for (const Point& p : nodes_of(*box.model, box.parts.back().id)) low = std::min(low, p.z);
   // cortex of ribs: at most 2 mm thick
   CHECK(low - top >= 0.25);
   CHECK(low - top <= 0.25 + 1.0);
-  CHECK(box.centre.z == doctest::Approx(low + 5));
+  CHECK(box.parts.back().pivot.z == doctest::Approx(low + 5));
   // its contact holds the bone's parts and itself; it flies
   bool found = false;
-  for (const auto& contact : box.model->contacts) found = found || contact.id == box.id;
+  for (const auto& contact : box.model->contacts)
+    found = found || contact.id == box.parts.back().id;
   CHECK(found);
 
   for (const std::string shape :
        {"shape = \"ball\"\nradius = 60\n", "shape = \"cylinder\"\nradius = 60\nlength = 160\n"}) {
-    const Fitted round = fit(rig_of(with_fixture(shape + at)));
+    const Mounted round(rig_of(with_fixture(shape + at)));
     const bool ball = shape.find("ball") != std::string::npos;
     double nearest = 1e30;
-    for (const Point& p : round.bone) {
-      const Point r = p - round.centre;
+    for (const Point& p : round.body.bones[0].nodes) {
+      const Point r = p - round.parts.back().pivot;
       if (!ball && std::abs(r.y) > 80) continue;
       nearest = std::min(nearest, (ball ? norm(r) : std::hypot(r.x, r.z)) - 60);
     }
@@ -282,16 +269,16 @@ TEST_CASE("a fixture stands clear of the bone by its gap and the reach of the sh
 
 TEST_CASE("a fixture that passes the bone by is refused") {
   const Rig rig = rig_of(with_fixture("shape = \"ball\"\nradius = 3\nat = [-500, 0, 0]"));
-  CHECK_THROWS_WITH_AS(fit(rig), doctest::Contains("fixture 'press' passes right.rib5 by"),
+  CHECK_THROWS_WITH_AS(Mounted{rig}, doctest::Contains("fixture 'press' passes right.rib5 by"),
                        BodyError);
 }
 
 TEST_CASE("a pad lies between the fixture and the bone and shares its face") {
-  const Fitted press = fit(rig_of(with_fixture(
+  const Mounted press(rig_of(with_fixture(
       "shape = \"box\"\nsize = [24, 48, 10]\nat = [77, -60, 0]\npad = { thickness = 6, density = "
       "1.5e-8, modulus = 1, compression = [[0, 0], [1, 0.1]] }")));
-  const std::vector<Point> rigid = nodes_of(*press.model, press.id),
-                           pad = nodes_of(*press.model, press.id + 1);
+  const std::vector<Point> rigid = nodes_of(*press.model, press.parts.back().id),
+                           pad = nodes_of(*press.model, press.parts.back().id + 1);
   REQUIRE(!pad.empty());
   double low = 1e30, pad_low = 1e30, pad_top = -1e30;
   for (const Point& p : rigid) low = std::min(low, p.z);
@@ -338,8 +325,8 @@ at = [1, 2, 3]
   BodyOptions options;
   options.only = rig.bones();
   const Body before = build_body(options);
-  Body body = build_body(options);
-  place_specimens(rig, body);
+  const Mounted mounted(rig);
+  const Body& body = mounted.body;
   REQUIRE(body.bones.size() == 2);
   const PlacedBone& lead = body.bones[std::size_t(find_bone(body.bones, "L4", Side::midline))];
   CHECK(norm(lead.placement.t - Point{1, 2, 3}) < 1e-9);
@@ -359,14 +346,8 @@ at = [1, 2, 3]
     }
   CHECK(own > 0);
 
-  Diagnostics diagnostics;
-  Builder builder(diagnostics);
-  AssembledBody assembled = assemble(body, {}, builder);
-  const auto parts = mount(rig, body, assembled, builder);
-  const auto model = builder.finish();
-  REQUIRE_FALSE(diagnostics.has_errors());
-  REQUIRE(parts.size() == 2);
-  CHECK(model->cross_sections.empty());  // bones that are potted whole have none
+  REQUIRE(mounted.parts.size() == 2);
+  CHECK(mounted.model->cross_sections.empty());  // bones that are potted whole have none
 }
 
 // e_p + s(e_p) / E = e in closed form: for a straight line e_p = (e - SIGY / E) / (1 + H / E) with

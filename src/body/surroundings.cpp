@@ -7,8 +7,7 @@
 #include <cmath>
 #include <functional>
 
-#include "body/id_rows.h"
-#include "body/shapes.h"
+#include "body/cards.h"
 
 namespace fabrica::body {
 namespace {
@@ -38,9 +37,7 @@ class Walls {
     const double at = support(body_, normal, accept);
     if (at > 1e29) return;
     const double set = double(++assembled_.next_set);
-    Card& nodes = builder_.add_card("SET_NODE_LIST");
-    nodes.options = {"TITLE"};
-    nodes.title = name;
+    Card& nodes = titled(builder_, "SET_NODE_LIST", name);
     nodes.set("sid", set);
     std::vector<std::int64_t> ids;
     for (std::size_t b = 0; b < body_.bones.size(); ++b)
@@ -90,7 +87,6 @@ bool one_of(const std::string& name, std::initializer_list<const char*> prefixes
 void seat(const Body& body, AssembledBody& assembled, Builder& builder) {
   Walls walls(body, assembled, builder);
   const auto up = [](const Placement& p) { return Point{p.R(0, 2), 0, p.R(2, 2)}; };
-  const auto unit = [](const Point& p) { return (1 / norm(p)) * p; };
   walls.add("seat pan", {0, 0, 1}, 0.3,
             [](const PlacedBone& b) { return b.region == Region::pelvis; });
   // thigh: square to the femur's shaft in the plane of symmetry, upward
@@ -150,13 +146,8 @@ void ball(const Body& body, AssembledBody& assembled, Builder& builder) {
   }
   const Point centre = middle + (front + 0.5) * forward;
   const ShapeMesh mesh = ball_mesh(radius, 25);
-  const std::int64_t first_node = assembled.next_node, part = assembled.next_part++;
-  for (const Point& p : mesh.nodes) builder.add_node(assembled.next_node++, centre + p);
-  for (const std::array<int, 8>& brick : mesh.bricks) {
-    std::array<std::int64_t, 8> corner{};
-    for (std::size_t k = 0; k < 8; ++k) corner[k] = first_node + brick[k];
-    builder.add_solid(assembled.next_element++, part, corner.data(), 8);
-  }
+  const std::int64_t part = assembled.next_part++;
+  add_shape(mesh, part, part, {identity3<double>(), centre}, assembled, builder);
   builder.add_card("SECTION_SOLID").set("secid", 8000001).set("elform", 1);
   builder.add_card("MAT_RIGID")
       .set("mid", 8000001)

@@ -9,7 +9,8 @@ namespace fabrica::body {
 
 namespace {
 
-Point unit(const Point& a) {
+// of what may have no length
+Point unit_or_z(const Point& a) {
   const double length = norm(a);
   return length > 0 ? (1 / length) * a : Point{0, 0, 1};
 }
@@ -17,7 +18,7 @@ Point unit(const Point& a) {
 }  // namespace
 
 Point quad_normal(const Point& a, const Point& b, const Point& c, const Point& d) {
-  return unit(cross(c - a, d - b));
+  return unit_or_z(cross(c - a, d - b));
 }
 
 BoneSurface::BoneSurface(const std::vector<Point>& nodes,
@@ -40,12 +41,12 @@ BoneSurface::BoneSurface(const std::vector<Point>& nodes,
       }
     }
     edge += norm(x[1] - x[0]);
-    triangles_.push_back({int(q), x[0], x[1], x[2], unit(cross(x[1] - x[0], x[2] - x[0]))});
-    triangles_.push_back({int(q), x[0], x[2], x[3], unit(cross(x[2] - x[0], x[3] - x[0]))});
+    triangles_.push_back({int(q), x[0], x[1], x[2], unit_or_z(cross(x[1] - x[0], x[2] - x[0]))});
+    triangles_.push_back({int(q), x[0], x[2], x[3], unit_or_z(cross(x[2] - x[0], x[3] - x[0]))});
   }
   std::sort(nodes_.begin(), nodes_.end());
   nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
-  for (Point& normal : node_normals_) normal = unit(normal);
+  for (Point& normal : node_normals_) normal = unit_or_z(normal);
 
   // cells of about two edges
   spacing_ = std::max(2 * edge / double(std::max<std::size_t>(quads.size(), 1)), 1e-3);

@@ -25,7 +25,7 @@ constexpr double wish = 0.44;     // of the scaled Jacobian, for the local stage
 class Touches {
  public:
   Touches(const std::vector<PlacedBone>& bones, const std::vector<Articulation>& joints)
-      : joints_(joints), surfaces(bones), moved_(bones.size(), 1) {}
+      : surfaces(bones), joints_(joints), moved_(bones.size(), 1) {}
   void moved(int bone) {
     surfaces.renew(bone);
     moved_[std::size_t(bone)] = 1;
@@ -47,6 +47,8 @@ class Touches {
     return all;
   }
 
+  Surfaces surfaces;
+
  private:
   std::vector<Touch> of_pair(const NearPair& pair) const {
     std::vector<Touch> found = surfaces.touches(pair, margin, reach);
@@ -57,11 +59,6 @@ class Touches {
   }
   const std::vector<Articulation>& joints_;
   std::map<std::pair<int, int>, std::vector<Touch>> kept_;
-
- public:
-  Surfaces surfaces;
-
- private:
   std::vector<char> moved_;
 };
 

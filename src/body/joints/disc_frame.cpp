@@ -29,8 +29,6 @@ std::array<Point, 2> ligament_ends(const std::vector<PlacedBone>& bones, const D
   throw BodyError("anatomy/joints/ligaments.csv: no row " + name + ", which the disc needs");
 }
 
-Point unit(const Point& a) { return (1 / norm(a)) * a; }
-
 }  // namespace
 
 std::vector<DiscRow> disc_rows(const std::vector<PlacedBone>& bones) {

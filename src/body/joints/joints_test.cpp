@@ -139,16 +139,26 @@ TEST_CASE("a part that hangs on nothing is named") {
   CHECK(alone[0].find(".c.") != std::string::npos);
 }
 
-// Two blocks that mirror each other reach by 0.5 mm on the right, and 0.1 mm on the left, into a
-// block of the midline that stands 0.2 mm off the plane of symmetry. Invariance: what mirrored
-// before mirrors after, to rounding.
-TEST_CASE("bones of both sides still mirror each other where the bone between is not symmetric") {
-  PlacedBone right = block("plate", {2, -10, 2}, 5.3, 3);
+namespace {
+
+// a block on the right of that size, and its mirror image
+std::pair<PlacedBone, PlacedBone> plates(double size) {
+  PlacedBone right = block("plate", {2, -10, 2}, size, 3);
   right.side = Side::right;
   PlacedBone left = right;
   left.side = Side::left;
   left.mesh = mirrored(right.mesh);
   for (Point& p : left.nodes) p = mirror(p);
+  return {right, left};
+}
+
+}  // namespace
+
+// Two blocks that mirror each other reach by 0.5 mm on the right, and 0.1 mm on the left, into a
+// block of the midline that stands 0.2 mm off the plane of symmetry. Invariance: what mirrored
+// before mirrors after, to rounding.
+TEST_CASE("bones of both sides still mirror each other where the bone between is not symmetric") {
+  const auto [right, left] = plates(5.3);
   PlacedBone middle = block("wedge", {0, -5.2, 0}, 10, 4);
   middle.side = Side::midline;
   std::vector<PlacedBone> bones{right, left, middle};
@@ -168,12 +178,7 @@ TEST_CASE("bones of both sides still mirror each other where the bone between is
 // The same plates on both sides of a block that mirrors itself. Invariance, to the bit: nodes of
 // the block are not moved one by one on both sides, but as one with their images.
 TEST_CASE("a bone of the midline that mirrors itself does so after it was cleared") {
-  PlacedBone right = block("plate", {2, -10, 2}, 5.5, 3);
-  right.side = Side::right;
-  PlacedBone left = right;
-  left.side = Side::left;
-  left.mesh = mirrored(right.mesh);
-  for (Point& p : left.nodes) p = mirror(p);
+  const auto [right, left] = plates(5.5);
   PlacedBone middle = block("wedge", {0, -5, 0}, 10, 4);
   middle.side = Side::midline;
   for (const Point& p : middle.nodes) {

@@ -66,24 +66,16 @@ void clear_where_solid(BoneMesh& mesh) {
   std::set<Quad> solid;
   for (std::size_t e = 0; e < mesh.bricks.size(); ++e) {
     if (mesh.brick_layer[e] != 1 && mesh.brick_layer[e] != 3) continue;
-    Quad face{mesh.bricks[e][4], mesh.bricks[e][5], mesh.bricks[e][6], mesh.bricks[e][7]};
-    std::sort(face.begin(), face.end());
-    solid.insert(face);
+    const Brick& b = mesh.bricks[e];
+    solid.insert(sorted({b[4], b[5], b[6], b[7]}));
   }
-  for (std::size_t q = 0; q < mesh.surface.size(); ++q) {
-    Quad face = mesh.surface[q];
-    std::sort(face.begin(), face.end());
-    if (solid.count(face)) mesh.cortex[q] = 0;
-  }
+  for (std::size_t q = 0; q < mesh.surface.size(); ++q)
+    if (solid.count(sorted(mesh.surface[q]))) mesh.cortex[q] = 0;
 }
 
 // each quad and its mirror image get the mean of their thicknesses
 void mirror_cortex(BoneMesh& mesh) {
   std::map<Quad, std::size_t> at;
-  const auto sorted = [](Quad q) {
-    std::sort(q.begin(), q.end());
-    return q;
-  };
   for (std::size_t q = 0; q < mesh.surface.size(); ++q) at[sorted(mesh.surface[q])] = q;
   const std::vector<double> before = mesh.cortex;
   for (std::size_t q = 0; q < before.size(); ++q) {

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "base/lane_math.h"
+#include "body/placement.h"
 
 namespace fabrica::body {
 namespace {
@@ -14,8 +15,6 @@ constexpr double core_size = 0.52;  // half width of the O-grid's core in radii
 constexpr double last_section =
     0.6;                        // height of the last section of bricks in a dome, in dome heights
 constexpr double flared = 0.3;  // of the length from either end, where ends widen
-
-Point unit(const Point& p) { return (1 / norm(p)) * p; }
 
 double radius(const LoftStation& section, double phi) {
   double r = section.r0;

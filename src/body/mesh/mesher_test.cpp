@@ -133,8 +133,10 @@ TEST_CASE("a hole in a slice stays open") {
   CHECK(euler_number(cells_of(field, {"ring", 3, 0, 0}).surface) == 0);
 }
 
-// Straight round loft of radius r and length l with domes of height d r: pi r^2 l + 4/3 pi r^2 d r.
-TEST_CASE("a round loft has the volume of a cylinder with domes, and its bricks fit its surface") {
+namespace {
+
+// of a straight round loft of radius 7 and length 60
+std::vector<LoftStation> round_stations() {
   std::vector<LoftStation> stations;
   for (int i = 0; i < 6; ++i) {
     LoftStation s;
@@ -144,8 +146,15 @@ TEST_CASE("a round loft has the volume of a cylinder with domes, and its bricks 
     s.r0 = 7;
     stations.push_back(s);
   }
+  return stations;
+}
+
+}  // namespace
+
+// Straight round loft of radius r and length l with domes of height d r: pi r^2 l + 4/3 pi r^2 d r.
+TEST_CASE("a round loft has the volume of a cylinder with domes, and its bricks fit its surface") {
   const double exact = pi * 49 * 60 + 4.0 / 3 * pi * 343;
-  Loft loft(stations, 0.5);
+  Loft loft(round_stations(), 0.5);
   loft.match_volume(exact);
   DistanceField field = DistanceField::of_triangles(loft.surface(64, 2), 0.5, 4);
   CHECK(field.volume() == doctest::Approx(exact).epsilon(0.01));
@@ -167,17 +176,8 @@ TEST_CASE("a round loft has the volume of a cylinder with domes, and its bricks 
 // A straight round loft whose ends lie in a box: one station stands outside of it, the other has
 // room for a dome of 3. Closed form: the faces of the box, and the volume that was asked for.
 TEST_CASE("the ends of a loft reach to the faces of a box and the girth takes the volume") {
-  std::vector<LoftStation> stations;
-  for (int i = 0; i < 6; ++i) {
-    LoftStation s;
-    s.c = {0, 0, 12.0 * i};
-    s.n = {0, 0, 1};
-    s.e1 = {1, 0, 0};
-    s.r0 = 7;
-    stations.push_back(s);
-  }
   const double volume = pi * 49 * 62;
-  Loft loft(stations, 0.8);
+  Loft loft(round_stations(), 0.8);
   loft.fit_ends({-9, -9, -3}, {9, 9, 58}, volume);
   const TriangleSurface surface = loft.surface(64, 1);
   double low = 0, high = 0;

@@ -157,10 +157,6 @@ bool keep_one_piece(CellGrid& grid) {
 
 // writes each quad of the left half as the mirror image of its partner, which keeps the diagonal
 void mirror_quads(BoneMesh& mesh) {
-  const auto sorted = [](Quad q) {
-    std::sort(q.begin(), q.end());
-    return q;
-  };
   const auto aside = [&](const Quad& q) {
     double y = 0;
     for (const int n : q) y += mesh.nodes[n].y;

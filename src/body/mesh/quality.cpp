@@ -56,9 +56,14 @@ double size_of(const Corners& corners) {
   return largest > 0 ? volume_of(corners) / largest : 0;
 }
 
+Quad sorted(Quad quad) {
+  std::sort(quad.begin(), quad.end());
+  return quad;
+}
+
 std::vector<Quad> boundary_quads(const std::vector<Brick>& bricks) {
   struct Face {
-    Quad sorted, quad;
+    Quad key, quad;
     int order;
   };
   std::vector<Face> faces;
@@ -66,17 +71,15 @@ std::vector<Quad> boundary_quads(const std::vector<Brick>& bricks) {
   for (const Brick& brick : bricks)
     for (const auto& f : brick_faces) {
       const Quad quad{brick[f[0]], brick[f[1]], brick[f[2]], brick[f[3]]};
-      Quad sorted = quad;
-      std::sort(sorted.begin(), sorted.end());
-      faces.push_back({sorted, quad, int(faces.size())});
+      faces.push_back({sorted(quad), quad, int(faces.size())});
     }
   std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
-    return std::tie(a.sorted, a.order) < std::tie(b.sorted, b.order);
+    return std::tie(a.key, a.order) < std::tie(b.key, b.order);
   });
   std::vector<Face> single;
   for (std::size_t i = 0; i < faces.size();) {
     std::size_t j = i + 1;
-    while (j < faces.size() && faces[j].sorted == faces[i].sorted) ++j;
+    while (j < faces.size() && faces[j].key == faces[i].key) ++j;
     if (j == i + 1) single.push_back(faces[i]);
     i = j;
   }

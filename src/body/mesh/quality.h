@@ -19,6 +19,9 @@ inline constexpr int brick_faces[6][4] = {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 
 inline constexpr int corner_neighbours[8][3] = {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7},
                                                 {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}};
 
+// the corners in ascending order: the same for all quads on them
+Quad sorted(Quad quad);
+
 using Corners = std::array<Point, 8>;
 Corners corners_of(const std::vector<Point>& nodes, const Brick& brick);
 

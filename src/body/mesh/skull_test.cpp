@@ -6,12 +6,11 @@
 #include <cmath>
 
 #include "body/mesh/skull_vault.h"
+#include "body/placement.h"
 
 using namespace fabrica::body;
 
 namespace {
-
-Point unit(const Point& p) { return (1 / fabrica::norm(p)) * p; }
 
 // thickness of the bricks of a layer, through their corners 0-3 to 4-7; the median
 double median_thickness(const BoneMesh& mesh, int layer) {
