@@ -71,7 +71,7 @@ def turn(fabrica, folder, name, joint, degrees):
     radians = sign * math.radians(degrees)
     slower = 2 if others else 1
     start = START * slower
-    time = abs(degrees) / RATE * slower + start / 2 + 2
+    time = max(abs(degrees) / RATE * slower + start / 2 + 2, start + 0.5)
     rate = radians / (time - start / 2)
     timing = f"end_time     = {time:.2f}\noutput_every = {time / 200:.4f}\nstates_every = {time / 20:.4f}"
     support = ('free   = ["x", "y", "z"]\n'
