@@ -10,7 +10,8 @@ no axial force and no moment about z. Sums over bricks and shells with the laws 
     S_ij = sum E i j dA about the centroid,  EI = S_zz - S_zy^2 / S_yy
     M(k) = sum s(e) z dA,  broken where |e| reaches the strain at fracture anywhere
 
-s is the slow curve of the law (yield, tangent modulus), times 1 + (rate / C)^(1/P) in the cortex with --rate. Shells are
+s is the slow curve of the law (yield, tangent modulus); with --rate its yield, and its hardening too unless VP is 1, times
+1 + (rate / C)^(1/P) in the cortex. Shells are
 taken twice: `run` as elements integrate them (area of the reference surface times thickness, layers inward from it),
 `bone` with the area that a layer has, narrower the deeper it lies on a curved surface. What is left out: shear, curvature
 of the axis, ovalling. `bone` takes the thickness of a shell for the depth of its layer. So this is what mesh and materials
@@ -65,23 +66,23 @@ class Deck:
         elif name.startswith("*MAT_") and "RIGID" not in name:
             v = self.fields(rows[1], 10)
             rate = self.fields(rows[2], 10) if "PIECEWISE" in name and len(rows) > 2 else []
-            c, p = (float(x) if x else 0 for x in (rate + ["", ""])[:2])
-            self.law[int(v[0])] = Law(*(float(x) for x in v[2:6]), c, p)
+            c, p, _, _, vp = (float(x) if x else 0 for x in (rate + 5 * [""])[:5])
+            self.law[int(v[0])] = Law(*(float(x) for x in v[2:6]), c, p, vp)
 
     def of_bone(self, bone, pid):
         return ("." + bone + ".") in ("." + self.part[pid][0] + ".")
 
 
 class Law:
-    """elastic, then a straight line: modulus, Poisson's ratio, yield, tangent modulus; C and P of the rate"""
+    """elastic, then a straight line: modulus, Poisson's ratio, yield, tangent modulus; C, P and VP of the rate"""
 
-    def __init__(self, e, nu, sigy, etan, c=0, p=0):
-        self.e, self.nu, self.sigy, self.etan, self.c, self.p = e, nu, sigy, etan, c, p
+    def __init__(self, e, nu, sigy, etan, c=0, p=0, vp=0):
+        self.e, self.nu, self.sigy, self.etan, self.c, self.p, self.vp = e, nu, sigy, etan, c, p, vp
 
     def stress(self, strain, rate):
         factor = 1 + (rate / self.c) ** (1 / self.p) if rate > 0 and self.c > 0 else 1
-        hard = self.e * self.etan / (self.e - self.etan)
-        plastic = np.maximum(abs(strain) - factor * self.sigy / self.e, 0) * self.e / (self.e + factor * hard)
+        hard = self.e * self.etan / (self.e - self.etan) * (1 if self.vp == 1 else factor)
+        plastic = np.maximum(abs(strain) - factor * self.sigy / self.e, 0) * self.e / (self.e + hard)
         return np.sign(strain) * (self.e * (abs(strain) - plastic))
 
 
