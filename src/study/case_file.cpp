@@ -22,6 +22,7 @@ SignalSpec read_signal(Fields f) {
   s.x_unit = f.text("x_unit", "");
   s.scale = f.number("scale", 1);
   s.x_scale = f.number("x_scale", 1);
+  s.window = f.interval("window");
   s.start_at = f.maybe_number("start_at");
   if (s.start_at && *s.start_at <= 0)
     f.fail("start_at", "is not above 0", "Give the magnitude from which contact counts as made");
@@ -51,8 +52,10 @@ CheckSpec read_check(Fields f, bool limit) {
   c.name = f.text("name");
   c.model = f.text("model");
   c.over = f.text("over", "");
+  c.window = f.interval("window");
   c.range = f.interval("range");
   const bool single = c.model.starts_with("rating:") || c.model.starts_with("fit:");
+  if (single && c.window) f.fail("window", "is given for a single number", "Remove it");
   c.statistic = f.text("statistic", "last");
   if (single && f.has("statistic"))
     f.fail("statistic", "is given for a single number", "Remove it");

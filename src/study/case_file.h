@@ -19,6 +19,7 @@ struct SignalSpec {
   std::string x_unit;  // likewise of the abscissa
   double scale = 1;    // from the result's unit into `unit`
   double x_scale = 1;
+  std::optional<std::pair<double, double>> window;  // of the run's time: what is looked at
   std::optional<double> start_at;   // in `unit`: the abscissa counts from where |y| reaches it
   std::string filter;               // "CFC60", "CFC180", "CFC600", "CFC1000", or none
   std::string reference;            // "file.csv:column", or none
@@ -36,8 +37,9 @@ struct CheckSpec {
   std::string model;  // as of a signal,
                       // "rating:<signal>:<method>[:part]" or "fit:<name>:<coefficient>"
   std::string over;   // the mean is taken over this, not over time
-  std::optional<std::pair<double, double>> range;  // of `over`
-  std::string statistic;                           // one of statistic_names()
+  std::optional<std::pair<double, double>> window;  // of the run's time: what is looked at
+  std::optional<std::pair<double, double>> range;   // of `over`
+  std::string statistic;                            // one of statistic_names()
   std::optional<double> expected;
   double tolerance = 0;  // relative to expected, absolute where that is 0
   std::optional<double> least, most;

@@ -49,6 +49,10 @@ Curve model_curve(const SignalSpec& s, Channels& channels) {
   for (const double v : y)
     if (!std::isfinite(v))
       throw StudyError("'" + s.model + "' holds a value that is not a number. Look at the run");
+  if (s.window) {
+    const std::vector<double> times = channels.abscissa(s.model);
+    x = within(*s.window, times, x), y = within(*s.window, times, y);
+  }
   scale(y, s.scale);
   scale(x, s.x_scale);
   if (s.start_at) {

@@ -47,16 +47,17 @@ double mean_over(const std::vector<double>& x, const std::vector<double>& y, dou
 
 namespace {
 
-// what a statistic is taken over: time, or the column `over`
+// what a statistic is taken over: time, or the column `over`, within the window
 std::vector<double> abscissa(const CheckSpec& c, Channels& channels, std::size_t samples) {
   std::vector<double> x = c.over.empty() ? channels.abscissa(c.model) : channels.column(c.over);
   if (x.size() != samples)
     throw StudyError("'" + c.model + "' and '" + c.over + "' are not sampled at the same times. " +
                      "Give both databases one interval");
-  return x;
+  return c.window ? within(*c.window, channels.abscissa(c.model), x) : x;
 }
 
-// the values of y where x lies within the range
+}  // namespace
+
 std::vector<double> within(const std::pair<double, double>& range, const std::vector<double>& x,
                            const std::vector<double>& y) {
   std::vector<double> kept;
@@ -67,8 +68,6 @@ std::vector<double> within(const std::pair<double, double>& range, const std::ve
                                  range.first, range.second));
   return kept;
 }
-
-}  // namespace
 
 double first_reaching(const std::vector<double>& x, const std::vector<double>& y, double level) {
   for (std::size_t i = 0; i < y.size() && i < x.size(); ++i) {
@@ -104,13 +103,15 @@ double statistic(const CheckSpec& c, Channels& channels) {
   for (const double v : y)
     if (!std::isfinite(v))
       throw StudyError("'" + c.model + "' holds a value that is not a number. Look at the run");
+  const std::size_t samples = y.size();
+  if (c.window) y = within(*c.window, channels.abscissa(c.model), y);
   if (c.statistic == "mean") {
-    const std::vector<double> x = abscissa(c, channels, y.size());
+    const std::vector<double> x = abscissa(c, channels, samples);
     const auto [low, high] = std::minmax_element(x.begin(), x.end());
     return c.range ? mean_over(x, y, c.range->first, c.range->second)
                    : mean_over(x, y, *low, *high);
   }
-  if (c.range) y = within(*c.range, abscissa(c, channels, y.size()), y);
+  if (c.range) y = within(*c.range, abscissa(c, channels, samples), y);
   if (c.statistic == "last") return y.back();
   if (c.statistic == "max") return *std::max_element(y.begin(), y.end());
   if (c.statistic == "min") return *std::min_element(y.begin(), y.end());

@@ -18,6 +18,10 @@ struct CheckResult {
   std::string problem;
 };
 
+// The values of y where x lies within the range. Throws StudyError if x never does.
+std::vector<double> within(const std::pair<double, double>& range, const std::vector<double>& x,
+                           const std::vector<double>& y);
+
 // Integral of y dx over the length of the path of x within [low, high], by the trapezoid rule.
 // Throws StudyError if the path never lies within.
 double mean_over(const std::vector<double>& x, const std::vector<double>& y, double low,
@@ -36,7 +40,7 @@ const std::vector<std::string>& statistic_names();
 // the start nor what swings after the fracture counts. Without such a fall the overall peak.
 double failure_load(const std::vector<double>& y);
 
-// The statistic that a check asks for, of the samples within its range, if it has one.
+// The statistic that a check asks for, of the samples within its window and range, if it has them.
 double statistic(const CheckSpec& check, Channels& channels);
 
 // The outcome of a check. `named` gives numbers that are no columns ("rating:...", "fit:...").

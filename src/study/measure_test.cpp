@@ -83,6 +83,29 @@ TEST_CASE("a range bounds every statistic") {
                        StudyError);
 }
 
+// f is 0, 2, -6, 4 and u 0, 10, 20, 15 at the times 0 to 3
+TEST_CASE("a window takes a part of the run's time, a range a part of what is in it") {
+  const Result r;
+  Channels channels(r.path.string(), r.path.string());
+  CheckSpec c;
+  c.model = "a:f:1", c.statistic = "max", c.window = {1.5, 3};
+  CHECK(statistic(c, channels) == 4);
+  c.statistic = "mean";
+  CHECK(statistic(c, channels) == -1);
+  c.over = "a:u", c.range = {14, 16}, c.statistic = "last", c.window = {0, 2.5};
+  CHECK_THROWS_WITH_AS(statistic(c, channels), doctest::Contains("no sample from 14 to 16"),
+                       StudyError);
+  c.window = {0, 3};
+  CHECK(statistic(c, channels) == 4);
+
+  Case owner;
+  SignalSpec s;
+  s.name = "f", s.model = "a:f:1", s.x = "a:u", s.scale = 2, s.window = {0.5, 2};
+  const SignalResult shown = compare_signal(s, channels, owner);
+  CHECK(shown.model.x == std::vector<double>{10, 20});
+  CHECK(shown.model.y == std::vector<double>{4, -12});
+}
+
 TEST_CASE("a quotient, a sum, a unit, and the head of a file are found") {
   const Result r;
   Channels channels(r.path.string(), r.path.string());
