@@ -211,9 +211,13 @@ TEST_CASE("supports of nodes of a rigid body hold its centre while they last") {
   m.model.nodes.translation_code[a] = 1;  // x
   SinglePointConstraint spc;
   spc.nodes = {b, c}, spc.fixed = {false, true, false, false, false, true}, spc.death = 0.5;
+  spc.where = {0, 12};
   m.model.constraints.push_back(spc);
   m.start();
+  // the warning names the first card, although the code of a node came before it
   CHECK(m.diagnostics.count(Severity::warning) == 1);
+  CHECK(m.diagnostics.list()[0].where.line == 12);
+  CHECK(m.diagnostics.list()[0].keyword == "BOUNDARY_SPC");
   Run run(m);
   CHECK(run.constraints.size() == 0);
   const auto push = [&](int steps) {

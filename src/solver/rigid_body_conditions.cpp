@@ -41,12 +41,18 @@ void RigidBodies::collect_supports(Diagnostics& diagnostics) {
     });
     if (!known) list.push_back(s);
   });
-  for (int b = 0; b < size(); ++b)
-    if (!supports_[b].empty())
-      diagnostics.warning("support-of-rigid-body", {}, "BOUNDARY_SPC", "NID",
-                          "supports of nodes of rigid body " + std::to_string(bodies_[b].id) +
-                              " hold its centre of mass and its rotation",
-                          "use the constraint codes of *MAT_RIGID (CMO, CON1, CON2)");
+  // one warning a body, at its first card; codes of nodes have none
+  for (int b = 0; b < size(); ++b) {
+    if (supports_[b].empty()) continue;
+    const auto card = std::find_if(supports_[b].begin(), supports_[b].end(),
+                                   [](const NodeSupport& s) { return s.where.line > 0; });
+    const bool spc = card != supports_[b].end();
+    diagnostics.warning("support-of-rigid-body", spc ? card->where : Location{},
+                        spc ? "BOUNDARY_SPC" : "NODE", spc ? "NID" : "TC",
+                        "supports of nodes of rigid body " + std::to_string(bodies_[b].id) +
+                            " hold its centre of mass and its rotation",
+                        "use the constraint codes of *MAT_RIGID (CMO, CON1, CON2)");
+  }
 }
 
 void RigidBodies::support_conditions(const State& state, int body, int local,

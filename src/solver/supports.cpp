@@ -57,7 +57,7 @@ void for_each_support(const Model& model, const std::function<void(int, const No
         const Vec3d d = s.local_system < 0 || moves
                             ? local
                             : transpose(model.coordinate_systems[s.local_system].axes) * local;
-        fn(n, {k >= 3, d, moves ? s.local_system : -1, s.birth, s.death});
+        fn(n, {k >= 3, d, moves ? s.local_system : -1, s.birth, s.death, s.where});
       }
 }
 

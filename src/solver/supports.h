@@ -13,6 +13,7 @@ struct NodeSupport {
   Vec3d direction{};  // global at the start; in components of the system if that moves
   int system = -1;    // moving coordinate system that carries the direction, or -1
   double birth = 0, death = 1e28;
+  Location where{};  // the card of *BOUNDARY_SPC; none for codes of *NODE
 };
 
 // Which of x, y, z (bits 0, 1, 2) a code 0 to 7 of *NODE, *MAT_RIGID and NRB_SPC holds.
