@@ -155,7 +155,7 @@ std::vector<Measure> thorax_measures() {
            "max s V D / D_ref",
            1.0,
            "UN R94, 5.2.1.5",
-           "Lau and Viano 1986; Euro NCAP TB 021",
+           "Lau and Viano 1986 (1.0 m/s: 25 % AIS4+ from the front); Euro NCAP TB 021",
            of_vc},
           {"a3ms chest",
            "thorax",
