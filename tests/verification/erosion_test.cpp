@@ -98,6 +98,31 @@ TEST_CASE("V28: a law without a failure strain keeps no energies of elements") {
   }
 }
 
+// The two faces of a brick are pushed through each other: it fails, turns inside out, and its nodes
+// fly on as nothing holds them, beside a brick that shares four of them and stays a brick.
+TEST_CASE("V28: a failed brick that turns inside out gives no force") {
+  Deck deck;
+  deck.end(1e3);
+  deck.key("SECTION_SOLID").card(1, 1);
+  deck.key("MAT_PLASTIC_KINEMATIC").card(1, rho, young, 0.0, 0.2, 1.0, 1.0).card(0.0, 0.0, 1e-3);
+  deck.part(1, 1, 1);
+  const Grid g = bricks(
+      deck, 1, 1, 2, [](int i, int j, int k) { return Vec3d(i, j, k); },
+      [](int, int, int) { return 4; }, 1);
+  deck.constant_step(0.2 / speed, 9);
+  deck.key("INITIAL_VELOCITY_NODE");
+  for (const int id : g.ids) deck.card(id, 0.0, 0.0, id > 4 ? -20.0 : 20.0);
+  Run run(deck);
+  for (int i = 0; i < 2000; ++i) REQUIRE(run.step());
+  REQUIRE(run.simulation->tiles().has_failed(0, 0));
+  REQUIRE(!run.simulation->tiles().has_failed(0, 1));
+  for (const int id : g.ids) {
+    CHECK(std::isfinite(run.v(id).z));
+    if (id <= 4) CHECK(run.v(id).z > 15);
+    if (id > 4) CHECK(run.v(id).z < -5);
+  }
+}
+
 // A brick that fails as a whole leaves nodes that nothing holds: their kinetic energy is eroded.
 TEST_CASE("V28: nodes without elements carry eroded kinetic energy") {
   Deck deck;

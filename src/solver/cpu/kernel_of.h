@@ -60,8 +60,10 @@ class KernelOf : public Kernel {
         call(p, dt_previous, t, b, k, c, s, out, totals);
         if (b == blocks - 1 && t.count % block_size != 0)
           drop_padding(t.count - b * block_size - k * W, out, totals);
-        if constexpr (M::can_fail)
+        if constexpr (M::can_fail) {
           if (t.element_energy) keep_energies(t, b, k, totals);
+          drop_failed(out, totals);
+        }
         internal[k] += totals.internal, hourglass[k] += totals.hourglass,
             damping[k] += totals.damping;
         if constexpr (M::can_fail)
@@ -163,6 +165,19 @@ class KernelOf : public Kernel {
       if (get(totals.alive, i) > 0) continue;
       e.failed = true, ++t.failed;
       t.eroded_internal += e.internal, t.eroded_hourglass += e.hourglass;
+    }
+  }
+
+  // A failed element is still computed beside those of its pack; its nodes go where they want, and
+  // once it has no volume its force is no number, of which nothing may reach the nodes it shares.
+  static void drop_failed(CornerForces<L, N>& out, const Totals<L>& totals) {
+    const auto lives = totals.alive > L(0.0);
+    const auto keep = [&](Vec3<L>& f) {
+      f = {select(lives, f.x, L(0.0)), select(lives, f.y, L(0.0)), select(lives, f.z, L(0.0))};
+    };
+    for (int a = 0; a < N; ++a) {
+      keep(out.f[a]);
+      if constexpr (E::rotations) keep(out.m[a]);
     }
   }
 

@@ -90,8 +90,14 @@ FABRICA_FN void element_forces(Lot lot, const GpuArrays& g, const GpuTile& t, co
     Totals<Real> totals;
     E::template forces<Real, M>(law, p, dt, c, s, out, totals);
     if constexpr (M::can_fail)
-      totals.time_step = select(totals.alive > 0, totals.time_step, Real(1e30)),
-      totals.volume = select(totals.alive > 0, totals.volume, Real(1e30));
+      if (!(totals.alive > 0)) {
+        totals.time_step = totals.volume = Real(1e30);
+        // without volume its force is no number
+        for (int a = 0; a < N; ++a) {
+          out.f[a] = {};
+          if constexpr (E::rotations) out.m[a] = {};
+        }
+      }
     const bool counts = e < t.count;
     m.total[e] = counts ? totals.internal : Real(0);
     m.total[T + e] = counts ? totals.hourglass : Real(0);
