@@ -165,7 +165,8 @@ std::string case_page(const Case& c, const Outcome& o, const PageExtras& e) {
     charts.push_back(energy);
   }
   body += run_section(o, e);
-  if (!e.readme.empty()) body += "<h2>Notes</h2>\n<pre>" + escaped(e.readme) + "</pre>\n";
+  if (!e.readme.empty())
+    body += "<h2>Notes</h2>\n<div class=\"notes\">\n" + html_of_markdown(e.readme) + "</div>\n";
   body += fmt::format("<p class=\"note\">Fabrica {}; inputs {}; finished {}.</p>\n",
                       escaped(o.version), escaped(o.fingerprint), escaped(o.finished));
   return page(c.title, "../assets", body, charts);

@@ -1,10 +1,12 @@
 #include "study/html.h"
 
 #include <fmt/format.h>
+#include <md4c-html.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <regex>
 
 namespace fabrica::study {
 namespace {
@@ -49,6 +51,20 @@ bool is_number(const std::string& cell) {
 }
 
 }  // namespace
+
+std::string html_of_markdown(const std::string& text) {
+  const std::size_t title = text.starts_with("# ") ? text.find('\n') : 0;
+  const std::string rest = title == std::string::npos ? "" : text.substr(title);
+  std::string out;
+  const auto append = [](const MD_CHAR* piece, MD_SIZE size, void* to) {
+    static_cast<std::string*>(to)->append(piece, size);
+  };
+  if (md_html(rest.data(), MD_SIZE(rest.size()), append, &out, MD_FLAG_TABLES | MD_FLAG_NOHTML, 0))
+    return "<pre>" + escaped(text) + "</pre>\n";
+  // what a readme says of the files beside it leads nowhere from a page
+  static const std::regex beside(R"(<a href="(?!https?:)[^"]*">([^<]*)</a>)");
+  return std::regex_replace(out, beside, "$1");
+}
 
 std::string escaped(const std::string& text) {
   std::string out;

@@ -9,6 +9,10 @@ namespace fabrica::study {
 // < > & and quotes as entities
 std::string escaped(const std::string& text);
 
+// Markdown with tables as HTML (md4c); HTML within it is shown as text. The title, a first line
+// `# ...`, is left out, since a page has its own; of links only those into the web stay.
+std::string html_of_markdown(const std::string& text);
+
 // A table with a head line; an empty head leaves it out. Cells are HTML; below a head, a cell that
 // begins with a digit or a minus sign stands to the right.
 std::string table(const std::vector<std::string>& head,

@@ -67,8 +67,13 @@ class Pages(unittest.TestCase):
         text = self.driver.find_element(By.TAG_NAME, "body").text
         self.assertIn("closed form: 10 sin(pi t / 50)", text)
         self.assertIn("no reference curve available", text)
-        notes = self.driver.find_element(By.TAG_NAME, "pre").text
-        self.assertIn("a <b>loop</b> is drawn & not rated", notes)
+        notes = self.driver.find_element(By.CLASS_NAME, "notes")
+        self.assertIn("a <b>loop</b> is drawn & not rated", notes.text)
+        self.assertNotIn("Two curves", notes.text)  # the page has its own title
+        self.assertEqual([c.text for c in notes.find_elements(By.TAG_NAME, "td")], ["half sine", "10 kN"])
+        self.assertEqual([a.get_attribute("href") for a in notes.find_elements(By.TAG_NAME, "a")],
+                         ["https://example.org/"])
+        self.assertIn("see curves.csv", notes.text)
         self.assertIn("passed", text)
         self.assertIn("CORA 3.6", text)
         self.assertIn("ISO/TS 18571:2014", text)
