@@ -218,6 +218,36 @@ TEST_CASE(
   CHECK(c.deepest.released == 25);
 }
 
+// A layer of 0.4 on a brick of 4 x 4 x 4: pressed in by 0.3, deeper than half of itself, a node
+// still touches its face, down to a quarter of the edge. Alone, its far face takes the node.
+TEST_CASE("a thin layer on a block holds a node deeper than half of the layer") {
+  for (const bool backed : {true, false}) {
+    Rig rig;
+    const int block = rig.add_part(), layer = rig.add_part(), upper = rig.add_part();
+    rig.add_brick(block, {0, 0, 0}, {4, 4, 4}, 1);
+    rig.add_brick(layer, {0, 0, 4}, {4, 4, 0.4}, 1);
+    const auto above = rig.add_brick(upper, {1, 1, 4.45}, {2, 2, 2}, 1);
+    if (backed)
+      for (std::size_t i = 0; i < 4; ++i)
+        rig.model.solids.node[1][i] = rig.model.solids.node[0][4 + i];
+    rig.add_contact(ContactKind::automatic_nodes_to_surface, {upper}, {layer});
+    rig.start(0.01);
+    Team team(1);
+    rig.contacts->forces(rig.model, rig.state, team);
+    rig.state.dt = 1;
+    const auto move = [&](double z, double time) {
+      for (int n : above) rig.state.nodes[n].v = {0, 0, -z}, rig.state.nodes[n].x.z -= z;
+      rig.state.time = time;
+      rig.contacts->forces(rig.model, rig.state, team);
+      rig.state.interaction.clear();
+    };
+    move(0.2, 1), move(0.15, 2);
+    const ContactCheck c = rig.contacts->checks()[0];
+    CHECK(c.deepest.depth == doctest::Approx(backed ? 0.3 : 0.15));
+    CHECK(c.deepest.allowed == doctest::Approx(backed ? 1.0 : 0.2));
+  }
+}
+
 // p = kappa d everywhere: each node gets p times its tributary area, on meshes that do not match
 TEST_CASE("contact patch: equal pressure between blocks whose meshes do not match") {
   Rig rig;

@@ -166,10 +166,41 @@ void SurfaceSource::add_solid_face(const Face& face, const Contact&, double scal
   const auto& contact = model_.parts[g.part].contact;
   if (contact && contact->stiffness_scale > 0) scale *= contact->stiffness_scale;
   g.stiffness = scale * solid_face_stiffness(input_.part_bulk[g.part], g.area, face.volume);
-  g.limit = g.area > 0 ? 0.5 * face.volume / g.area : 0;
-  g.mass_per_area = density(g.part) * g.limit;
+  const double own = g.area > 0 ? face.volume / g.area : 0, flat = 0.5 * std::sqrt(g.area);
+  g.limit = 0.5 * (own < flat ? thickness_behind(face, flat) : own);
+  g.mass_per_area = 0.5 * density(g.part) * own;
   finish_segment(g);
   s.segments.push_back(g);
+}
+
+// the other solid on that face; null where there is none
+const SurfaceSource::Face* SurfaceSource::across(const std::array<int, 4>& key, int solid) const {
+  auto f = std::lower_bound(faces_.begin(), faces_.end(), key,
+                            [](const Face& a, const auto& k) { return a.key < k; });
+  while (f != faces_.end() && f->key == key && f->solid == solid) ++f;
+  return f != faces_.end() && f->key == key ? &*f : nullptr;
+}
+
+// A thin layer on a body is no thin plate: thickness of the bricks that lie one behind the other
+// under a face, until they are enough or end.
+double SurfaceSource::thickness_behind(const Face& face, double enough) const {
+  constexpr int opposite[6] = {1, 0, 4, 5, 2, 3};
+  double sum = 0;
+  for (const Face* f = &face; f;) {
+    const double area = norm(area_vector(model_.nodes.x, distinct(f->node)));
+    if (area > 0) sum += f->volume / area;
+    const auto& n = model_.solids.node[f->solid];
+    if (sum >= enough || n[7] < 0 || n[8] >= 0) break;
+    const Faces local = local_faces(n);
+    const auto key = [&](std::size_t i) {
+      return key_of(distinct({n[local[i][0]], n[local[i][1]], n[local[i][2]], n[local[i][3]]}));
+    };
+    const Face* next = nullptr;
+    for (std::size_t i = 0; i < 6; ++i)
+      if (key(i) == f->key) next = across(key(std::size_t(opposite[i])), f->solid);
+    f = next;
+  }
+  return std::min(sum, enough);
 }
 
 void SurfaceSource::add_shell(int shell, const Contact& contact, bool reference,

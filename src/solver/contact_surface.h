@@ -79,6 +79,8 @@ class SurfaceSource {
   };
   void collect_faces();
   void find_bodies();
+  const Face* across(const std::array<int, 4>& key, int solid) const;
+  double thickness_behind(const Face& face, double enough) const;
   void add_solid_face(const Face& face, const Contact& contact, double scale,
                       ContactSurface& s) const;
   void add_shell(int shell, const Contact& contact, bool reference, ContactSurface& s) const;
