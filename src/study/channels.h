@@ -16,6 +16,10 @@ struct SourcedTable {
 };
 SourcedTable read_sourced_csv(const std::string& path);
 
+struct Curve {
+  std::vector<double> x, y;
+};
+
 class Channels {
  public:
   // `histories` holds one csv file per database; `folder` the files that a case names

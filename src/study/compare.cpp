@@ -41,25 +41,14 @@ Curve finite(std::vector<double> x, std::vector<double> y) {
 }
 
 Curve model_curve(const SignalSpec& s, Channels& channels) {
-  std::vector<double> y = channels.column(s.model);
-  std::vector<double> x = s.x.empty() ? channels.abscissa(s.model) : channels.column(s.x);
-  if (x.size() != y.size())
-    throw StudyError("'" + s.model + "' and '" + s.x + "' are not sampled at the same times. " +
-                     "Give both databases one interval");
-  for (const double v : y)
-    if (!std::isfinite(v))
-      throw StudyError("'" + s.model + "' holds a value that is not a number. Look at the run");
-  if (s.window) {
-    const std::vector<double> times = channels.abscissa(s.model);
-    x = within(*s.window, times, x), y = within(*s.window, times, y);
-  }
-  scale(y, s.scale);
-  scale(x, s.x_scale);
+  Curve c = samples(s.model, s.x, s.window, channels);
+  scale(c.y, s.scale);
+  scale(c.x, s.x_scale);
   if (s.start_at) {
-    const double from = first_reaching(x, y, *s.start_at);
-    for (double& v : x) v -= from;
+    const double from = first_reaching(c.x, c.y, *s.start_at);
+    for (double& v : c.x) v -= from;
   }
-  return {std::move(x), std::move(y)};
+  return c;
 }
 
 // a column of a reference file over its abscissa

@@ -45,19 +45,6 @@ double mean_over(const std::vector<double>& x, const std::vector<double>& y, dou
   return work / way;
 }
 
-namespace {
-
-// what a statistic is taken over: time, or the column `over`, within the window
-std::vector<double> abscissa(const CheckSpec& c, Channels& channels, std::size_t samples) {
-  std::vector<double> x = c.over.empty() ? channels.abscissa(c.model) : channels.column(c.over);
-  if (x.size() != samples)
-    throw StudyError("'" + c.model + "' and '" + c.over + "' are not sampled at the same times. " +
-                     "Give both databases one interval");
-  return c.window ? within(*c.window, channels.abscissa(c.model), x) : x;
-}
-
-}  // namespace
-
 std::vector<double> within(const std::pair<double, double>& range, const std::vector<double>& x,
                            const std::vector<double>& y) {
   std::vector<double> kept;
@@ -67,6 +54,23 @@ std::vector<double> within(const std::pair<double, double>& range, const std::ve
     throw StudyError(fmt::format("the run has no sample from {} to {}. Correct the range",
                                  range.first, range.second));
   return kept;
+}
+
+Curve samples(const std::string& model, const std::string& over,
+              const std::optional<std::pair<double, double>>& window, Channels& channels) {
+  std::vector<double> y = channels.column(model);
+  std::vector<double> x = over.empty() ? channels.abscissa(model) : channels.column(over);
+  if (x.size() != y.size())
+    throw StudyError("'" + model + "' and '" + over + "' are not sampled at the same times. " +
+                     "Give both databases one interval");
+  for (const double v : y)
+    if (!std::isfinite(v))
+      throw StudyError("'" + model + "' holds a value that is not a number. Look at the run");
+  if (window) {
+    const std::vector<double> times = channels.abscissa(model);
+    x = within(*window, times, x), y = within(*window, times, y);
+  }
+  return {std::move(x), std::move(y)};
 }
 
 double first_reaching(const std::vector<double>& x, const std::vector<double>& y, double level) {
@@ -99,19 +103,14 @@ double failure_load(const std::vector<double>& y) {
 }
 
 double statistic(const CheckSpec& c, Channels& channels) {
-  std::vector<double> y = channels.column(c.model);
-  for (const double v : y)
-    if (!std::isfinite(v))
-      throw StudyError("'" + c.model + "' holds a value that is not a number. Look at the run");
-  const std::size_t samples = y.size();
-  if (c.window) y = within(*c.window, channels.abscissa(c.model), y);
-  if (c.statistic == "mean") {
-    const std::vector<double> x = abscissa(c, channels, samples);
+  const bool mean = c.statistic == "mean";
+  auto [x, y] = samples(c.model, mean || c.range ? c.over : "", c.window, channels);
+  if (mean) {
     const auto [low, high] = std::minmax_element(x.begin(), x.end());
     return c.range ? mean_over(x, y, c.range->first, c.range->second)
                    : mean_over(x, y, *low, *high);
   }
-  if (c.range) y = within(*c.range, abscissa(c, channels, samples), y);
+  if (c.range) y = within(*c.range, x, y);
   if (c.statistic == "last") return y.back();
   if (c.statistic == "max") return *std::max_element(y.begin(), y.end());
   if (c.statistic == "min") return *std::min_element(y.begin(), y.end());

@@ -1,7 +1,9 @@
 #pragma once
 // Checks of a case: a statistic of a result and the bounds it must keep.
 #include <functional>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "study/case_file.h"
@@ -21,6 +23,11 @@ struct CheckResult {
 // The values of y where x lies within the range. Throws StudyError if x never does.
 std::vector<double> within(const std::pair<double, double>& range, const std::vector<double>& x,
                            const std::vector<double>& y);
+
+// A column over another one or, where `over` is empty, over time, within a window of time. Throws
+// StudyError where they differ in length, y is not a number or the window is empty.
+Curve samples(const std::string& model, const std::string& over,
+              const std::optional<std::pair<double, double>>& window, Channels& channels);
 
 // Integral of y dx over the length of the path of x within [low, high], by the trapezoid rule.
 // Throws StudyError if the path never lies within.

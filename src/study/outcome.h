@@ -12,10 +12,6 @@
 
 namespace fabrica::study {
 
-struct Curve {
-  std::vector<double> x, y;
-};
-
 // A signal of a case: its curve, what it is compared with, and the ratings.
 struct SignalResult {
   std::string name, unit, x_name, x_unit, filter;

@@ -41,6 +41,19 @@ Deck torn_bar(int n, double v, Grid& g) {
   return deck;
 }
 
+// A column of n unit bricks that yield at 0.2 GPa and fail at a plastic strain.
+Deck failing_bricks(int n, double failure, Grid& g) {
+  Deck deck;
+  deck.end(1e3);
+  deck.key("SECTION_SOLID").card(1, 1);
+  deck.key("MAT_PLASTIC_KINEMATIC").card(1, rho, young, 0.0, 0.2, 1.0, 1.0).card(0.0, 0.0, failure);
+  deck.part(1, 1, 1);
+  g = bricks(
+      deck, 1, 1, n, [](int i, int j, int k) { return Vec3d(i, j, k); },
+      [](int, int, int) { return 4; }, 1);
+  return deck;
+}
+
 }  // namespace
 
 // V28: with 1/2 m v(n-1/2).v(n+1/2) as kinetic energy, kinetic + internal + hourglass + eroded is
@@ -83,16 +96,8 @@ TEST_CASE("V28: the energy of a bar is constant while it tears") {
 // Energies element by element are kept only where the parameters of a law let something fail.
 TEST_CASE("V28: a law without a failure strain keeps no energies of elements") {
   for (const double failure : {0.0, 1e-3, 1e20, 1e21}) {
-    Deck deck;
-    deck.end(1e3);
-    deck.key("SECTION_SOLID").card(1, 1);
-    deck.key("MAT_PLASTIC_KINEMATIC")
-        .card(1, rho, young, 0.0, 0.2, 1.0, 1.0)
-        .card(0.0, 0.0, failure);
-    deck.part(1, 1, 1);
-    bricks(
-        deck, 1, 1, 1, [](int i, int j, int k) { return Vec3d(i, j, k); },
-        [](int, int, int) { return 4; }, 1);
+    Grid g;
+    Deck deck = failing_bricks(1, failure, g);
     Run run(deck);
     CHECK(run.simulation->tiles().energies.empty() == (failure != 1e-3));
   }
@@ -101,14 +106,8 @@ TEST_CASE("V28: a law without a failure strain keeps no energies of elements") {
 // The two faces of a brick are pushed through each other: it fails, turns inside out, and its nodes
 // fly on as nothing holds them, beside a brick that shares four of them and stays a brick.
 TEST_CASE("V28: a failed brick that turns inside out gives no force") {
-  Deck deck;
-  deck.end(1e3);
-  deck.key("SECTION_SOLID").card(1, 1);
-  deck.key("MAT_PLASTIC_KINEMATIC").card(1, rho, young, 0.0, 0.2, 1.0, 1.0).card(0.0, 0.0, 1e-3);
-  deck.part(1, 1, 1);
-  const Grid g = bricks(
-      deck, 1, 1, 2, [](int i, int j, int k) { return Vec3d(i, j, k); },
-      [](int, int, int) { return 4; }, 1);
+  Grid g;
+  Deck deck = failing_bricks(2, 1e-3, g);
   deck.constant_step(0.2 / speed, 9);
   deck.key("INITIAL_VELOCITY_NODE");
   for (const int id : g.ids) deck.card(id, 0.0, 0.0, id > 4 ? -20.0 : 20.0);
@@ -125,14 +124,8 @@ TEST_CASE("V28: a failed brick that turns inside out gives no force") {
 
 // A brick that fails as a whole leaves nodes that nothing holds: their kinetic energy is eroded.
 TEST_CASE("V28: nodes without elements carry eroded kinetic energy") {
-  Deck deck;
-  deck.end(1e3);
-  deck.key("SECTION_SOLID").card(1, 1);
-  deck.key("MAT_PLASTIC_KINEMATIC").card(1, rho, young, 0.0, 0.2, 1.0, 1.0).card(0.0, 0.0, 1e-3);
-  deck.part(1, 1, 1);
-  const Grid g = bricks(
-      deck, 1, 1, 1, [](int i, int j, int k) { return Vec3d(i, j, k); },
-      [](int, int, int) { return 4; }, 1);
+  Grid g;
+  Deck deck = failing_bricks(1, 1e-3, g);
   deck.no_bulk_viscosity().constant_step(0.2 / speed, 9);
   deck.mass(g.at(0, 0, 1), rho);
   deck.key("INITIAL_VELOCITY_NODE");
