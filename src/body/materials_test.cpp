@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <sstream>
 
+#include "body/mesh/quality.h"
+
 using namespace fabrica;
 using namespace fabrica::body;
 
@@ -28,6 +30,24 @@ Card& law_of(const std::string& name, Builder& builder) {
 }
 
 }  // namespace
+
+// A wave crosses a shell, area / longest side, with c = sqrt(E / (rho (1 - nu^2))). 0.8 us is asked
+// at coarse; bones that are rigid there have no shells.
+TEST_CASE("at coarse no shell of a bone asks for a step below 0.8 us") {
+  Diagnostics diagnostics;
+  for (const std::string& bone : bone_names()) {
+    const BoneMaterial rows = bone_material(bone);
+    if (rows.rigid_at_coarse) continue;
+    CAPTURE(bone);
+    Builder builder(diagnostics);
+    const Card& law = law_of(rows.cortical, builder);
+    const double nu = law.real("pr");
+    const double speed = std::sqrt(law.real("e") / (law.real("ro") * (1 - nu * nu)));
+    const BoneMesh mesh = mesh_bone({bone, Resolution::coarse});
+    for (std::size_t q = 0; q < mesh.surface.size(); ++q)
+      if (mesh.cortex[q] > 0) CHECK(shell_size(mesh.nodes, mesh.surface[q]) / speed > 0.8e-3);
+  }
+}
 
 // Kemper 2005, cortex of ribs, 117 coupons pulled at 0.5 1/s (5e-4 1/ms): 93.9 MPa at 0.2 % plastic
 // strain, 124.2 MPa at a strain of 2.7 %. Stress of the law: s(e_p) (1 + (rate / C)^(1/P)).

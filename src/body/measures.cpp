@@ -301,11 +301,12 @@ std::string parts_table(const AssembledBody& assembled, const CheckReport& check
   static const Table rows("materials.csv");
   std::map<std::string, int> row_of;
   for (int r = 0; r < rows.rows(); ++r) row_of[rows.text(r, "row")] = r;
-  std::unordered_map<std::int64_t, double> mass;
-  for (const PartReport& p : check.parts) mass[p.id] = p.mass;
+  std::unordered_map<std::int64_t, const PartReport*> report;
+  for (const PartReport& p : check.parts) report[p.id] = &p;
   std::string text =
-      "\n## Parts\n\n| id | part | elements | mass g | material | fracture | source |\n| --- | --- "
-      "| --- | --- | --- | --- | --- |\n";
+      "\n## Parts\n\n| id | part | elements | mass g | step us | material | fracture | source |\n| "
+      "--- "
+      "| --- | --- | --- | --- | --- | --- | --- |\n";
   for (const PartEntry& p : assembled.parts) {
     std::string source = p.source, fracture = "none";
     if (const auto at = row_of.find(p.material); at != row_of.end()) {
@@ -314,8 +315,11 @@ std::string parts_table(const AssembledBody& assembled, const CheckReport& check
       fracture = rows.text(at->second, "criterion");
       if (fracture != "none") fracture += " " + rows.text(at->second, "value");
     }
-    text += fmt::format("| {} | {} | {} | {:.2f} | {}{} | {} | {} |\n", p.id, p.name, p.elements,
-                        1000 * mass[p.id], p.material, p.rigid ? " (rigid)" : "", fracture, source);
+    const PartReport& r = *report.at(p.id);
+    const std::string step = r.time_step > 0 ? fmt::format("{:.3f}", 1000 * r.time_step) : "-";
+    text +=
+        fmt::format("| {} | {} | {} | {:.2f} | {} | {}{} | {} | {} |\n", p.id, p.name, p.elements,
+                    1000 * r.mass, step, p.material, p.rigid ? " (rigid)" : "", fracture, source);
   }
   return text;
 }

@@ -194,8 +194,9 @@ class Checker {
     // the mass of *PART_INERTIA replaces that of the elements
     if (!model_.parts[part].inertia)
       for (int k = 0; k < m.corners; ++k) report_.node_mass[m.node[k]] += m.mass / m.corners;
-    if (!model_.parts[part].rigid && m.time_step > 0)
-      report_.smallest.push_back({id, p.id, family, m.time_step});
+    if (model_.parts[part].rigid || m.time_step <= 0) return;
+    report_.smallest.push_back({id, p.id, family, m.time_step});
+    p.time_step = p.time_step > 0 ? std::min(p.time_step, m.time_step) : m.time_step;
   }
 
   Measure solid(int e) const {

@@ -15,6 +15,7 @@ struct PartReport {
   int formulation = 0, elements = 0;
   bool rigid = false;
   double mass = 0;
+  double time_step = 0;  // smallest of its elements; 0: rigid, or no element has one
 };
 struct StepReport {
   std::int64_t element = 0, part = 0;

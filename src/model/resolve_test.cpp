@@ -77,6 +77,7 @@ TEST_CASE("check: mass, centre, time step and kinetic energy of a cube") {
   for (int k = 0; k < 3; ++k) CHECK(r.center[k] == doctest::Approx(0.5));
   REQUIRE(r.smallest.size() == 1);
   CHECK(r.smallest[0].time_step == doctest::Approx(0.5));
+  CHECK(r.parts.at(0).time_step == doctest::Approx(0.5));
   const std::string text = format_check(r, cube.diagnostics);
   CHECK(text.ends_with("check: 0 errors, 0 unsupported, 0 ignored, 0 warnings\n"));
 }

@@ -6,9 +6,9 @@
 
 #include "body/joints/articulation.h"
 #include "body/joints/elastic.h"
+#include "body/joints/mend.h"
 #include "body/joints/shift_bones.h"
 #include "body/joints/touch.h"
-#include "body/mesh/polish.h"
 #include "body/mesh/quality.h"
 
 namespace fabrica::body {
@@ -19,7 +19,6 @@ constexpr double reach = 6;       // [mm] deeper is another side of the bone, no
 constexpr double margin = 0.6;    // [mm] touches this far beyond the gap are kept in view
 constexpr double surplus = 0.03;  // [mm] asked for beyond the gap
 constexpr double allowed = 0.02;  // [mm] of overlap that counts as none
-constexpr double wish = 0.44;     // of the scaled Jacobian, for the local stage
 
 // The touches as bones stand, kept by pairs: only pairs with a bone that has moved are sought anew.
 class Touches {
@@ -113,37 +112,18 @@ std::vector<std::vector<Touch>> groups_of(const std::vector<Touch>& touches,
   return list;
 }
 
-// The local stage for one bone: its worst bricks and shells, surfaces kept where they are, other
-// bones at their distance.
-void polish_bone(PlacedBone& bone, int index, bool own, const std::vector<Touch>& touches,
-                 const std::vector<PlacedBone>& bones, const BoneSurface& surface) {
-  UntangleProblem problem;
-  problem.bricks = bone.mesh.bricks;
-  if (own) problem.image = bone.mesh.image;
-  problem.spacing = 0;
-  for (const Brick& brick : bone.mesh.bricks)
-    for (float l : edge_lengths(corners_of(bone.nodes, brick)))
-      problem.spacing += l / (3.0 * double(bone.mesh.bricks.size()));
-  double least_shell = 1e30;
-  for (std::size_t q = 0; q < bone.mesh.cortex.size(); ++q)
-    if (bone.mesh.cortex[q] > 0) problem.shells.push_back(bone.mesh.surface[q]);
-  for (const Quad& quad : problem.shells)
-    least_shell = std::min(least_shell, shell_size(bone.mesh.nodes, quad));
-  for (int n : surface.nodes())
-    problem.planes.push_back({n, bone.nodes[std::size_t(n)], surface.node_normal(n), 100, false});
+// other bones that a bone touches, as planes that its nodes stay in front of
+std::vector<PlaneNode> planes_of(const std::vector<Touch>& touches, int index,
+                                 const std::vector<PlacedBone>& bones) {
+  std::vector<PlaneNode> planes;
   for (const Touch& t : touches) {
     if (t.a != index) continue;
     Point place{0, 0, 0};
     for (std::size_t i = 0; i < 4; ++i)
       place += t.weight[i] * bones[std::size_t(t.b)].nodes[std::size_t(t.quad[i])];
-    problem.planes.push_back({t.node, place + t.gap * t.normal, t.normal, 2000, true});
+    planes.push_back({t.node, place + t.gap * t.normal, t.normal, 2000, true});
   }
-  PolishOptions options;
-  options.jacobian = wish;
-  options.size = 0.25 * problem.spacing;
-  options.shell_size = problem.shells.empty() ? 0 : least_shell;
-  options.sweeps = 30;
-  polish(problem, bone.nodes, options);
+  return planes;
 }
 
 void polish_all(std::vector<PlacedBone>& bones, const std::vector<Touch>& touches,
@@ -152,7 +132,8 @@ void polish_all(std::vector<PlacedBone>& bones, const std::vector<Touch>& touche
     PlacedBone& bone = bones[std::size_t(b)];
     const int twin = mirrors.twin[std::size_t(b)];
     if (twin >= 0 && bone.side == Side::left) continue;
-    polish_bone(bone, b, mirrors.own[std::size_t(b)], touches, bones, search.surfaces[b]);
+    mend(bone.mesh, bone.nodes, mirrors.own[std::size_t(b)], search.surfaces[b],
+         planes_of(touches, b, bones));
     search.moved(b);
     if (twin < 0) continue;
     for (std::size_t n = 0; n < bone.nodes.size(); ++n)

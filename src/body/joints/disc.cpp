@@ -9,6 +9,7 @@
 
 #include "body/joints/disc_frame.h"
 #include "body/joints/joint_law.h"
+#include "body/joints/mend.h"
 #include "body/joints/piece_builder.h"
 #include "body/mesh/polish.h"
 #include "body/mesh/quality.h"
@@ -334,16 +335,18 @@ void compress_body(PlacedBone& bone, double top, double bottom, double back, dou
   double front = back;
   for (const Point& p : bone.mesh.nodes) front = std::max(front, p.x);
   const double middle = 0.5 * (front + back);
-  for (std::size_t n = 0; n < bone.nodes.size(); ++n) {
-    Point& p = bone.mesh.nodes[n];
+  for (Point& p : bone.mesh.nodes) {
     const double x = std::clamp((p.x - (back - 3)) / 6, 0.0, 1.0);
     const double behind = x * x * (3 - 2 * x);
     const double t = std::clamp((p.z - bottom) / (top - bottom), 0.0, 1.0);
     p.z += behind * ((1 - t) * up - t * down);
     p.x += behind * girth * (p.x - middle);
     p.y += behind * girth * p.y;
-    bone.nodes[n] = bone.placement(p);
   }
+  mend(bone.mesh, bone.mesh.nodes, !bone.mesh.image.empty(),
+       BoneSurface(bone.mesh.nodes, bone.mesh.surface), {});
+  for (std::size_t n = 0; n < bone.nodes.size(); ++n)
+    bone.nodes[n] = bone.placement(bone.mesh.nodes[n]);
 }
 
 }  // namespace

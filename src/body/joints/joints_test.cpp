@@ -7,6 +7,7 @@
 #include "body/joints/join_bones.h"
 #include "body/joints/joint_law.h"
 #include "body/joints/ligament_law.h"
+#include "body/joints/mend.h"
 #include "body/mesh/quality.h"
 #include "body/tables.h"
 
@@ -107,6 +108,31 @@ TEST_CASE("a bone that others do not hold moves whole instead of being pressed s
   for (const auto& brick : bones[1].mesh.bricks)
     volume += volume_of(corners_of(bones[1].nodes, brick));
   CHECK(volume == Approx(125).epsilon(0.03));
+}
+
+// A cube of 27 bricks of 4 mm: an inner node of its upper face goes aside by 2 mm, so that two
+// shells have an area of 12 mm2 on sides of at most sqrt(20) mm. A node off its plane by d costs
+// 100 (d / 4 mm)^2, a shell at its wish 1: nodes stay within 0.4 mm of the face.
+TEST_CASE("a moved bone gets the size of its shells back while its surface stays") {
+  PlacedBone cube = block("cube", {0, 0, 0}, 12, 3);
+  cube.mesh.cortex.assign(cube.mesh.surface.size(), 1.0);
+  cube.mesh.shell_wish = 2.8;
+  for (Point& p : cube.nodes)
+    if (norm(p - Point{4, 4, 12}) < 1e-9) p.x += 2;
+  const auto smallest = [&] {
+    double least = 1e30;
+    for (const Quad& q : cube.mesh.surface) least = std::min(least, shell_size(cube.nodes, q));
+    return least;
+  };
+  CHECK(smallest() == Approx(12 / std::sqrt(20.0)));
+  mend(cube.mesh, cube.nodes, false, BoneSurface(cube.nodes, cube.mesh.surface), {});
+  CHECK(smallest() >= 2.8);
+  // nodes within the face; those of its rim may also slide on the other faces
+  for (std::size_t n = 0; n < cube.nodes.size(); ++n) {
+    const Point& p = cube.mesh.nodes[n];
+    if (std::max(std::abs(p.x - 6), std::abs(p.y - 6)) < 3 && p.z > 11)
+      CHECK(std::abs(cube.nodes[n].z - 12) < 0.4);
+  }
 }
 
 TEST_CASE("every row of the tables of joints names bones and a law that exist") {

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <set>
 
+#include "body/materials.h"
 #include "body/mesh/bone_tables.h"
 #include "body/mesh/cortex.h"
 #include "body/mesh/mesher.h"
@@ -19,8 +20,10 @@ namespace {
 
 constexpr double least_jacobian = 0.30;
 
-// [mm] a wave crosses 2.6 mm of cortical bone (17 GPa) in 0.8 us, 1.2 mm in 0.37 us
-double shell_wish(Resolution resolution) {
+// [mm] a wave crosses 2.6 mm of cortical bone (17 GPa) in 0.8 us, 1.2 mm in 0.37 us; 0 where no
+// shells will lie
+double shell_wish(const std::string& bone, Resolution resolution) {
+  if (resolution == Resolution::coarse && bone_material(bone).rigid_at_coarse) return 0;
   return resolution == Resolution::coarse ? 2.6 : resolution == Resolution::standard ? 1.2 : 0.8;
 }
 
@@ -57,7 +60,7 @@ BoneMesh loft_mesh(const BoneRecipe& recipe, BoneShape& shape, double h, Resolut
   for (const Brick& brick : mesh.bricks)
     problem.target.push_back(edge_lengths(corners_of(mesh.nodes, brick)));
   fit(mesh, shape.field, problem,
-      {shape.table_volume, 100, 0.06 * h, shell_wish(resolution), 1.0, 0.50, 100});
+      {shape.table_volume, 100, 0.06 * h, shell_wish(recipe.name, resolution), 1.3, 0.50, 100});
   return mesh;
 }
 
@@ -141,9 +144,10 @@ Made make(const std::string& name, Resolution resolution) {
   const bool solid = recipe.solid_cortex > 0 && resolution != Resolution::coarse;
   made.mesh = recipe.maker == "loft"    ? loft_mesh(recipe, shape, h, resolution)
               : recipe.maker == "skull" ? skull_mesh(shape, cell_options(recipe, h), resolution)
-              : solid                   ? solid_cortex_mesh(recipe, shape, h, recipe.solid_cortex)
-                                        : mesh_solid(shape.field, cell_options(recipe, h),
-                                                     {shape.table_volume, 200, 0.3 * h, shell_wish(resolution)});
+              : solid
+                  ? solid_cortex_mesh(recipe, shape, h, recipe.solid_cortex)
+                  : mesh_solid(shape.field, cell_options(recipe, h),
+                               {shape.table_volume, 200, 0.3 * h, shell_wish(name, resolution)});
   made.mesh.name = name;
   made.mesh.resolution = resolution;
   if (!solid) made.mesh.cortex = cortex_of(made.mesh, name, shape);

@@ -27,6 +27,7 @@ struct BoneMesh {
   // [mm] shell thickness of each boundary quad, 0 where the cortex behind it is solid; empty where
   // it is solid all over
   std::vector<double> cortex;
+  double shell_wish = 0;  // [mm] area / longest side that was asked of its shells; 0: nothing was
   // of a bone of the midline that is its own mirror image: the node on the other side, of a node in
   // the plane y = 0 itself; empty: it is not
   std::vector<int> image;

@@ -79,15 +79,16 @@ void fit(BoneMesh& mesh, DistanceField& field, const UntangleProblem& problem,
   local.shell_size =
       std::min(options.least_shell, options.shell_room * options.volume / surface_area(mesh));
   local.weight = options.local_weight;
+  mesh.shell_wish = local.shell_size;
   // on small bones the local stage takes room for its wishes: where that is more than 1 % of the
   // volume, it starts again with the surface moved in by as much
   const std::vector<Point> before = mesh.nodes;
-  polish(problem, mesh.nodes, local);
-  const double excess = solid_volume(mesh) - options.volume;
-  if (std::abs(excess) > 0.01 * options.volume) {
-    field.offset -= std::clamp(excess / surface_area(mesh), -most_offset, most_offset);
+  for (int attempt = 0; attempt < passes; ++attempt) {
     mesh.nodes = before;
     polish(problem, mesh.nodes, local);
+    const double excess = solid_volume(mesh) - options.volume;
+    if (std::abs(excess) < 0.01 * options.volume) break;
+    field.offset -= std::clamp(excess / surface_area(mesh), -most_offset, most_offset);
   }
   field.offset = table_offset;
 }

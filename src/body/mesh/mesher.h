@@ -31,7 +31,7 @@ struct FitOptions {
   double end_weight = 100;   // w of the last minimisation
   double least_size = 1;     // [mm] wish of the local stage for bricks
   double least_shell = 0;    // [mm] wish for the shells on the boundary; 0: none are there
-  double shell_room = 1.25;  // shells are asked to be no larger than this many V / A
+  double shell_room = 1.6;   // shells are asked to be no larger than this many V / A
   double jacobian = 0.45;    // wish of the local stage for scaled Jacobians
   double local_weight = 50;  // w of the local stage
 };
