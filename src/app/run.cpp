@@ -91,9 +91,10 @@ class Output {
       while (next_plot_ <= t * (1 + 1e-12)) next_plot_ += plot_interval_;
     }
   }
+  void flush_tables() { csv_->flush(); }
   void flush() {
     binout_->flush();
-    csv_->flush();
+    flush_tables();
   }
 
  private:
@@ -276,7 +277,10 @@ int run_command(const RunCommand& c) {
   const Sampler sampler{[&](double t) { return line_due || output.wants(t); },
                         [&] {
                           output.sample();
-                          if (line_due) progress(simulation, started_at, seconds_since(start));
+                          if (line_due) {
+                            progress(simulation, started_at, seconds_since(start));
+                            output.flush_tables();  // who looks on reads what is there by now
+                          }
                           line_due = false;
                         }};
   std::signal(SIGINT, request_stop);

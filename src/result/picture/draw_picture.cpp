@@ -5,7 +5,6 @@
 #include <vtkActor.h>
 #include <vtkCamera.h>
 #include <vtkCellData.h>
-#include <vtkDataSetSurfaceFilter.h>
 #include <vtkFeatureEdges.h>
 #include <vtkFloatArray.h>
 #include <vtkImageResize.h>
@@ -31,6 +30,7 @@
 #include "result/picture/canvas.h"
 #include "result/picture/module.h"
 #include "result/picture/snapshot.h"
+#include "result/picture/surface.h"
 
 namespace fabrica {
 namespace {
@@ -346,12 +346,8 @@ void draw_scale(Canvas& canvas, const std::string& field, std::pair<double, doub
 
 std::vector<Panel> make_panels(const Snapshots& snapshots) {
   std::vector<Panel> out;
-  for (const Snapshot& s : snapshots.list) {
-    vtkNew<vtkDataSetSurfaceFilter> surface;
-    surface->SetInputData(s.grid);
-    surface->Update();
-    out.push_back({s.time, surface->GetOutput(), {}, false});
-  }
+  for (const Snapshot& s : snapshots.list)
+    out.push_back({s.time, visible_surface(s.grid), {}, false});
   return out;
 }
 

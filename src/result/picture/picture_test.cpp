@@ -131,6 +131,41 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("picture: a shell on the face of a brick covers it") {
+  // a flat brick, seen from above, whose upper face is a shell of another part: where the two are
+  // drawn in one place, which of them a pixel shows is left to rounding
+  const sample::Scratch folder;
+  ResultMesh m = bricks();
+  m.shell = {{7, 8, 11, 10}};
+  m.shell_id = {3};
+  m.shell_part = {2};
+  m.part_id = {1, 2, 3};
+  m.part_title = {"left", "right", "cover"};
+  m.part_family = {Family::solid, Family::solid, Family::shell};
+  {
+    VtuWriter out(folder.file("run.pvd"), m);
+    out.write(state_of(m, 0));
+  }
+  PictureOptions o;
+  o.input = folder.path.string();
+  o.output = folder.file("p.png");
+  o.view = "top";
+  o.width = 400, o.height = 200;
+  o.caption = false, o.edges = false;
+  o.palette = {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}};
+  render_picture(o);
+  Image image(o.output);
+  int of_cover = 0, of_brick = 0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const auto c = image.at(x, y);
+      of_cover += c[2] > 2 * c[0] && c[2] > 2 * c[1];
+      of_brick += c[1] > 2 * c[0] && c[1] > 2 * c[2];
+    }
+  CHECK(of_cover > 5000);
+  CHECK(of_brick == 0);
+}
+
 TEST_CASE("picture: a chart as PNG shows its curve") {
   const sample::Scratch scratch;
   {
