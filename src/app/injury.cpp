@@ -135,7 +135,9 @@ void print_list() {
     fmt::print("{} [{}], {}\n  formula  {}\n  filter   {}\n", m.name, m.unit, m.region, m.formula,
                m.filter);
     if (m.limit) fmt::print("  limit    {} ({})\n", *m.limit, m.limit_source);
-    fmt::print("  source   {}\n  channels ", m.source);
+    fmt::print("  source   {}\n", m.source);
+    if (!m.doubt.empty()) fmt::print("  not confirmed: {}\n", m.doubt);
+    fmt::print("  channels ");
     for (const std::string& role : m.roles) fmt::print(" {}", role);
     fmt::print("\n");
   }
@@ -152,12 +154,20 @@ void print_table(const std::vector<Judged>& all) {
                m.unit == "1" ? "" : m.unit, m.limit ? fmt::format("{:.4g}", *m.limit) : "-",
                m.limit && j.finding->value > *m.limit ? "  exceeded" : "");
     if (!j.finding->detail.empty()) fmt::print("    {}\n", j.finding->detail);
+    if (!m.doubt.empty()) fmt::print("    not confirmed: {}\n", m.doubt);
     for (const Risk& r : j.finding->risks)
-      fmt::print("    {:<26}{:>10.1f} %    {}\n", r.event, 100 * r.probability, r.source);
+      fmt::print("    {:<26}{:>10.1f} %    {}{}\n", r.event, 100 * r.probability, r.source,
+                 r.doubt.empty() ? "" : "; not confirmed: " + r.doubt);
   }
   fmt::print("\nnot computed\n");
   for (const Judged& j : all)
     if (!j.finding) fmt::print("{:<28}{}{}\n", j.measure->name, j.failed ? "error " : "", j.reason);
+}
+
+ordered_json with_doubt(ordered_json entry, const std::string& doubt) {
+  entry["confirmed"] = doubt.empty();
+  if (!doubt.empty()) entry["not_confirmed"] = doubt;
+  return entry;
 }
 
 ordered_json report(const std::vector<Judged>& all) {
@@ -171,15 +181,15 @@ ordered_json report(const std::vector<Judged>& all) {
       entry["detail"] = j.finding->detail;
       entry["risks"] = ordered_json::array();
       for (const Risk& r : j.finding->risks)
-        entry["risks"].push_back(
-            {{"event", r.event}, {"probability", r.probability}, {"source", r.source}});
+        entry["risks"].push_back(with_doubt(
+            {{"event", r.event}, {"probability", r.probability}, {"source", r.source}}, r.doubt));
     } else {
       entry[j.failed ? "error" : "missing"] = j.reason;
     }
     entry["filter"] = m.filter, entry["formula"] = m.formula;
     if (m.limit) entry["limit"] = *m.limit, entry["limit_source"] = m.limit_source;
     entry["source"] = m.source, entry["channels"] = m.roles;
-    list.push_back(std::move(entry));
+    list.push_back(with_doubt(std::move(entry), m.doubt));
   }
   return list;
 }

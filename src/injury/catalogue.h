@@ -13,6 +13,9 @@ std::vector<Measure> thorax_measures();
 std::vector<Measure> leg_measures();
 std::vector<Measure> tissue_measures();
 
+// What is open about a number that nothing confirms but one program.
+inline constexpr const char* read_once = "coefficients read in one program only";
+
 // 1 / (1 + exp(-x))
 inline double logistic(double x) { return 1 / (1 + std::exp(-x)); }
 // 1 - exp(-(x / scale)^shape)

@@ -70,10 +70,10 @@ Finding of_chest_clip(const Subject&, const Channels& c) {
 Finding of_cti(const Subject&, const Channels& c) {
   const double v = combined_thoracic_index(clip(in_g(filtered_resultant(c, "chest", 180)), 0.003),
                                            deflection_mm(c));
-  const char* source = "Kleinberger et al. 1998; read in one program only";
+  const char* source = "Kleinberger et al. 1998";
   return {v,
           "intercepts of the Hybrid III 50M: 85 g, 102 mm",
-          {{"AIS2+", logistic(-4.847 + 6.036 * v), source},
+          {{"AIS2+", logistic(-4.847 + 6.036 * v), source, "one program has 4.847, another 4.870"},
            {"AIS3+", logistic(-8.224 + 7.125 * v), source},
            {"AIS4+", logistic(-9.872 + 7.125 * v), source},
            {"AIS5+", logistic(-14.242 + 6.589 * v), source}}};

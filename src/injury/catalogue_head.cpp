@@ -32,12 +32,13 @@ Finding hic15(const Subject&, const Channels& c) {
   const double h = f.value;
   const char* source = "NHTSA 1995, expanded Prasad-Mertz curves";
   if (h <= 0) return f;
-  f.risks = {{"AIS1+", logistic(-(1.54 + 200 / h - 0.00650 * h)), source},
-             {"AIS2+", logistic(-(2.49 + 200 / h - 0.00483 * h)), source},
-             {"AIS3+", logistic(-(3.39 + 200 / h - 0.00372 * h)), source},
-             {"AIS4+", logistic(-(4.90 + 200 / h - 0.00351 * h)), source},
-             {"AIS5+", logistic(-(7.82 + 200 / h - 0.00429 * h)), source},
-             {"skull fracture AIS2+", normal((std::log(h) - 6.96352) / 0.84664), "Mertz 1997"}};
+  f.risks = {
+      {"AIS1+", logistic(-(1.54 + 200 / h - 0.00650 * h)), source},
+      {"AIS2+", logistic(-(2.49 + 200 / h - 0.00483 * h)), source},
+      {"AIS3+", logistic(-(3.39 + 200 / h - 0.00372 * h)), source},
+      {"AIS4+", logistic(-(4.90 + 200 / h - 0.00351 * h)), source},
+      {"AIS5+", logistic(-(7.82 + 200 / h - 0.00429 * h)), source},
+      {"skull fracture AIS2+", normal((std::log(h) - 6.96352) / 0.84664), "Mertz 1997", read_once}};
   return f;
 }
 Finding hic36(const Subject&, const Channels& c) {
@@ -60,8 +61,8 @@ Finding of_bric(const Subject&, const Channels& c) {
           {{"AIS1+", weibull(b, 0.120, 2.84), source},
            {"AIS2+", weibull(b, 0.602, 2.84), source},
            {"AIS3+", weibull(b, 0.987, 2.84), source},
-           {"AIS4+", weibull(b, 1.204, 2.84), source},
-           {"AIS5+", weibull(b, 1.252, 2.84), source}}};
+           {"AIS4+", weibull(b, 1.204, 2.84), source, read_once},
+           {"AIS5+", weibull(b, 1.252, 2.84), source, read_once}}};
 }
 
 Finding of_damage(const Subject&, const Channels& c) {

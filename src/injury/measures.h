@@ -23,10 +23,12 @@ struct Subject {
 // NAME=VALUE; throws SignalError "unknown-parameter" with the list of names.
 void set_parameter(Subject& subject, const std::string& text);
 
+// A number counts as confirmed if it was read in its source or stands alike in independent programs
+// or texts (docs/theory/injury.md). `doubt` says what is not; empty where all is.
 struct Risk {
   std::string event;
   double probability = 0;
-  std::string source;
+  std::string source, doubt{};
 };
 struct Finding {
   double value = 0;
@@ -45,6 +47,7 @@ struct Measure {
   std::optional<double> limit;
   std::string limit_source, source;
   Finding (*evaluate)(const Subject&, const Channels&);
+  std::string doubt{};
 };
 const std::vector<Measure>& measures();
 

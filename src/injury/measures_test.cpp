@@ -139,6 +139,28 @@ TEST_CASE("measures: severity after Kroell and the risk of CTI at known loads") 
   CHECK(std::abs(serious.probability - 0.142152) < 2e-3);
 }
 
+// docs/theory/injury.md: what stands in one program only, or not alike in two
+TEST_CASE("measures: what is not confirmed says so, and nothing else does") {
+  Channels c;
+  for (const char* role : {"head.ax", "head.ay", "head.az", "chest.ax", "chest.ay", "chest.az"})
+    c[role] = pulse("g", 50);
+  for (const char* role : {"head.wx", "head.wy", "head.wz"}) c[role] = pulse("rad/s", 30);
+  c["chest.deflection"] = pulse("mm", 40);
+  c["femur_left.fz"] = pulse("kN", -4);
+  c["ribs.strain"] = {"ribs", "1", "1", {5, 6}, {0.01, 0.02}};
+  std::vector<std::string> open;
+  for (const Judged& j : judge({}, c)) {
+    if (!j.measure->doubt.empty()) open.push_back(j.measure->name);
+    if (j.finding)
+      for (const Risk& r : j.finding->risks)
+        if (!r.doubt.empty()) open.push_back(j.measure->name + " " + r.event);
+  }
+  CHECK(open == std::vector<std::string>{"HIC15 skull fracture AIS2+", "BrIC AIS4+", "BrIC AIS5+",
+                                         "CTI AIS2+", "MPS95", "CSDM", "fractured ribs, risk NFR1+",
+                                         "fractured ribs, risk NFR2+",
+                                         "fractured ribs, risk NFR3+"});
+}
+
 TEST_CASE("measures: channel codes of ISO-MME name their roles") {
   CHECK(role_of_code("11HEAD0000H3ACXA") == "head.ax");
   CHECK(role_of_code("11HEAD0000H3AVZP") == "head.wz");

@@ -79,6 +79,11 @@ Signal resampled(const Signal& s, double low, double high, double step) {
                       "Shorten the interval, or give the signal that covers it");
   Signal out{s.name, s.unit, s.x_unit, {}, {}};
   const std::size_t n = std::size_t(std::floor((high - low) / step * (1 + 1e-12) + 1e-6)) + 1;
+  if (n < 2)
+    throw SignalError("bad-interval",
+                      fmt::format("a step of {} {} is longer than '{}', known from {} to {}", step,
+                                  s.x_unit, s.name, low, high),
+                      "Give the step in the unit of the record");
   out.x.resize(n), out.y.resize(n);
   std::size_t at = 1;
   for (std::size_t i = 0; i < n; ++i) {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -17,6 +18,7 @@ namespace fabrica {
 namespace {
 
 using std::numbers::pi;
+constexpr std::array<double, 4> classes{60, 180, 600, 1000};
 constexpr double samples_per_class = 10;  // SAE J211-1: at least 10 CFC samples a second
 
 // one pass over the record, in place; starts as if the first value had always been there
@@ -44,7 +46,7 @@ std::vector<double> padded(const std::vector<double>& y, std::size_t count) {
 }  // namespace
 
 FilterCoefficients cfc_coefficients(double cfc, double interval) {
-  if (!(cfc > 0))
+  if (std::find(classes.begin(), classes.end(), cfc) == classes.end())
     throw SignalError("unknown-filter-class", fmt::format("channel frequency class {}", cfc),
                       "Use 60, 180, 600 or 1000");
   if (!(interval > 0) || interval * samples_per_class * cfc > 1 + 1e-6)

@@ -62,6 +62,12 @@ TEST_CASE("CFC: gain at the corner frequency is 1/sqrt(2)") {
     CHECK(std::abs(cfc_gain(cfc_coefficients(cfc, 1e-6), cfc / 0.6, 1e-6) - std::sqrt(0.5)) < 1e-3);
 }
 
+TEST_CASE("CFC: a class that SAE J211 does not have is refused") {
+  for (const double cfc : {0.0, -60.0, 100.0, 1650.0})
+    CHECK_THROWS_WITH_AS(cfc_coefficients(cfc, 1e-6), doctest::Contains("Use 60, 180, 600 or 1000"),
+                         SignalError);
+}
+
 TEST_CASE("CFC: a filtered sine keeps its phase and has the gain of the response") {
   const double interval = 1e-4, f = 80;
   const FilterCoefficients c = cfc_coefficients(60, interval);
@@ -103,6 +109,21 @@ TEST_CASE("integral and derivative of a parabola, with units") {
   CHECK(std::abs(again.y[0]) < 1e-6);
   CHECK(std::abs(again.y[50] - 6 * 0.05 * 9.80665) < 1e-9);
   CHECK(std::abs(again.y.back() - 6 * 0.1 * 9.80665) < 1e-6);
+}
+
+// F = 2 t [kN] over 10 ms: the impulse is F t / 2
+TEST_CASE("the integral of a force over time is an impulse") {
+  Signal force = sampled(
+      1, 11, [](double t) { return 2 * t; }, "kN");
+  force.x_unit = "ms";
+  const Signal impulse = integrated(force);
+  CHECK(impulse.unit == "N s");
+  CHECK(impulse.y.back() == doctest::Approx(20e3 * 0.010 / 2).epsilon(1e-12));
+}
+
+TEST_CASE("a step longer than the record is refused with the unit it was taken in") {
+  const Signal s = sampled(1e-4, 11, [](double t) { return t; });
+  CHECK_THROWS_WITH_AS(resampled(s, 0.1), doctest::Contains("0.1 s is longer than"), SignalError);
 }
 
 TEST_CASE("resultant, crop and offset") {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
 
 #include "signal/units.h"
@@ -11,8 +10,8 @@ namespace fabrica {
 namespace {
 
 // each is the rate of change of the one before it
-constexpr std::array<std::array<const char*, 3>, 3> chains{
-    {{"m", "m/s", "m/s2"}, {"rad", "rad/s", "rad/s2"}, {"deg", "deg/s", "deg/s2"}}};
+const std::vector<std::vector<const char*>> chains{
+    {"m", "m/s", "m/s2"}, {"rad", "rad/s", "rad/s2"}, {"deg", "deg/s", "deg/s2"}, {"N s", "N"}};
 
 struct UnitAndFactor {
   std::string unit;
@@ -24,9 +23,9 @@ struct UnitAndFactor {
 UnitAndFactor changed_unit(const Signal& s, int order) {
   if (!known_unit(s.unit) || !known_unit(s.x_unit)) return {};
   for (const auto& chain : chains)
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < int(chain.size()); ++i) {
       const int j = i + order;
-      if (j < 0 || j > 2) continue;
+      if (j < 0 || j >= int(chain.size())) continue;
       try {
         const double y = unit_factor(s.unit, chain[i]), x = unit_factor(s.x_unit, "s");
         return {chain[j], order > 0 ? y / x : y * x};
@@ -48,10 +47,11 @@ Signal cropped(const Signal& s, std::optional<double> low, std::optional<double>
     out.y.push_back(s.y[i]);
   }
   if (out.size() < 2)
-    throw SignalError("empty-signal",
-                      fmt::format("'{}' has {} samples in the interval; it is known from {} to {}",
-                                  s.name, out.size(), s.x.front(), s.x.back()),
-                      "Choose an interval inside the record");
+    throw SignalError(
+        "empty-signal",
+        fmt::format("'{}' has {} samples in the interval; it is known from {} to {} {}", s.name,
+                    out.size(), s.x.front(), s.x.back(), s.x_unit),
+        "Choose an interval inside the record");
   return out;
 }
 

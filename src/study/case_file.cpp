@@ -51,15 +51,10 @@ CheckSpec read_check(Fields f, bool limit) {
   c.line = f.line();
   c.name = f.text("name");
   c.model = f.text("model");
-  c.over = f.text("over", "");
-  c.window = f.interval("window");
-  c.range = f.interval("range");
   const bool single = c.model.starts_with("rating:") || c.model.starts_with("fit:");
-  if (single && c.window) f.fail("window", "is given for a single number", "Remove it");
-  c.statistic = f.text("statistic", "last");
-  if (single && f.has("statistic"))
-    f.fail("statistic", "is given for a single number", "Remove it");
-  f.one_of("statistic", c.statistic, statistic_names());
+  for (const char* key : {"window", "statistic"})
+    if (single && f.has(key)) f.fail(key, "is given for a single number", "Remove it");
+  read_statistic(f, c);
   if (limit) {
     c.least = f.maybe_number("least"), c.most = f.maybe_number("most");
     if (!c.least && !c.most) f.fail("", "a limit without a bound", "Give least, most or both");

@@ -40,6 +40,7 @@ struct CheckSpec {
   std::optional<std::pair<double, double>> window;  // of the run's time: what is looked at
   std::optional<std::pair<double, double>> range;   // of `over`
   std::string statistic;                            // one of statistic_names()
+  std::string energy;  // of "failure": what is stored in the part that breaks
   std::optional<double> expected;
   double tolerance = 0;  // relative to expected, absolute where that is 0
   std::optional<double> least, most;

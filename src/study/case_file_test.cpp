@@ -84,6 +84,10 @@ TEST_CASE("every fault of a case is named with file, line, key and remedy") {
                       "[[check]]\nname = \"c\"\nmodel = \"a:b\"\nexpected = 1\ntolerance = 0.1\n"
                       "statistic = \"median\"\n"),
              {"check[2].statistic", "'median' is not known", "mean, last"}));
+  CHECK(says(error_of(head + check + "statistic = \"failure\"\n"),
+             {"check[1].energy", "is missing", "matsum:internal_energy"}));
+  CHECK(says(error_of(head + check + "energy = \"matsum:internal_energy:1\"\n"),
+             {"check[1].energy", "without the statistic failure"}));
   CHECK(says(
       error_of(head + check + "[[signal]]\nname = \"s\"\nmodel = \"a:b\"\nfilter = \"CFC100\"\n"),
       {"signal[1].filter", "CFC180"}));

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "study/error.h"
+#include "study/toml_fields.h"
 
 namespace fabrica::study {
 namespace {
@@ -27,6 +28,12 @@ bool holds(const CheckSpec& c, double value) {
     return std::abs(value - *c.expected) <= c.tolerance * scale;
   }
   return (!c.least || value >= *c.least) && (!c.most || value <= *c.most);
+}
+
+// The energy of a check, sampled as its load.
+std::vector<double> energy_beside(const CheckSpec& c, Channels& channels) {
+  const auto [x, y] = samples(c.energy, c.range ? c.over : "", c.window, channels);
+  return c.range ? within(*c.range, x, y) : y;
 }
 
 }  // namespace
@@ -91,15 +98,32 @@ const std::vector<std::string>& statistic_names() {
   return names;
 }
 
-double failure_load(const std::vector<double>& y) {
-  double peak = 0, largest = 0;  // largest: with its sign
-  for (const double v : y) peak = std::max(peak, std::abs(v));
-  for (const double v : y) {
-    const bool loaded = std::abs(largest) >= 0.25 * peak;
-    if (loaded && v * largest <= 0.5 * largest * largest) break;
-    if (std::abs(v) > std::abs(largest)) largest = v;
+void read_statistic(Fields& f, CheckSpec& c) {
+  c.over = f.text("over", "");
+  c.window = f.interval("window");
+  c.range = f.interval("range");
+  c.statistic = f.text("statistic", "last");
+  f.one_of("statistic", c.statistic, statistic_names());
+  c.energy = f.text("energy", "");
+  if (c.energy.empty() == (c.statistic == "failure"))
+    f.fail("energy", c.energy.empty() ? "is missing" : "is given without the statistic failure",
+           "failure takes the column of the energy stored in the part that breaks, as "
+           "matsum:internal_energy:PART");
+}
+
+double failure_load(const std::vector<double>& load, const std::vector<double>& energy) {
+  if (load.size() != energy.size())
+    throw StudyError(
+        "load and energy of failure are not sampled at the same times. "
+        "Give both databases one interval");
+  const double overall = energy.empty() ? 0 : *std::max_element(energy.begin(), energy.end());
+  double largest = 0, stored = 0, up_to_now = 0;
+  for (std::size_t i = 0; i < load.size(); ++i) {
+    if (stored >= 0.25 * overall && energy[i] < 0.98 * stored) return largest;
+    up_to_now = std::max(up_to_now, std::abs(load[i]));
+    if (energy[i] >= stored) stored = energy[i], largest = up_to_now;
   }
-  return std::abs(largest);
+  return up_to_now;
 }
 
 double statistic(const CheckSpec& c, Channels& channels) {
@@ -111,10 +135,10 @@ double statistic(const CheckSpec& c, Channels& channels) {
                    : mean_over(x, y, *low, *high);
   }
   if (c.range) y = within(*c.range, x, y);
+  if (c.statistic == "failure") return failure_load(y, energy_beside(c, channels));
   if (c.statistic == "last") return y.back();
   if (c.statistic == "max") return *std::max_element(y.begin(), y.end());
   if (c.statistic == "min") return *std::min_element(y.begin(), y.end());
-  if (c.statistic == "failure") return failure_load(y);
   const double peak = *std::max_element(
       y.begin(), y.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
   return c.statistic == "peak" ? peak : std::abs(peak);

@@ -11,6 +11,8 @@
 
 namespace fabrica::study {
 
+class Fields;
+
 struct CheckResult {
   std::string name;
   double value = 0;
@@ -42,10 +44,14 @@ double first_reaching(const std::vector<double>& x, const std::vector<double>& y
 // magnitude, with its sign), magnitude (without) and failure (see failure_load).
 const std::vector<std::string>& statistic_names();
 
-// The load at which something gave way: the largest magnitude before the load first falls to half
-// of it or turns round, counted from a quarter of the overall peak on, so that neither ripples at
-// the start nor what swings after the fracture counts. Without such a fall the overall peak.
-double failure_load(const std::vector<double>& y);
+// Reads what a check asks for of its column: over, window, range, statistic, energy.
+void read_statistic(Fields& f, CheckSpec& c);
+
+// The load under which something broke: the largest magnitude up to the moment at which the energy
+// stored in it is greatest before it first falls by 2 %, counted from a quarter of its overall
+// maximum on. A fracture frees energy at once and for good, while the load at a support swings
+// before and after. Without such a fall the overall peak. Energy and load of equal length.
+double failure_load(const std::vector<double>& load, const std::vector<double>& energy);
 
 // The statistic that a check asks for, of the samples within its window and range, if it has them.
 double statistic(const CheckSpec& check, Channels& channels);

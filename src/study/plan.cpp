@@ -130,10 +130,7 @@ OutputSpec read_output(Fields f) {
   OutputSpec o;
   o.measure.name = f.text("name");
   o.measure.model = f.text("model");
-  o.measure.over = f.text("over", "");
-  o.measure.range = f.interval("range");
-  o.measure.statistic = f.text("statistic", "last");
-  f.one_of("statistic", o.measure.statistic, statistic_names());
+  read_statistic(f, o.measure);
   o.reference = f.text("reference", "");
   f.finish();
   return o;

@@ -83,6 +83,13 @@ class Injury(unittest.TestCase):
         self.assertEqual(m["fractured ribs, strain"]["value"], 1)
         self.assertIn("2 ribs", m["fractured ribs, risk"]["detail"])
         self.assertIn("brain.strain: head.brain.gray, head.brain.white, 4 solids", done.stderr)
+        # what is not confirmed is said in both outputs
+        self.assertEqual((m["MPS"]["confirmed"], m["MPS95"]["confirmed"]), (True, False))
+        self.assertIn("whether its 95 %", m["MPS95"]["not_confirmed"])
+        self.assertIn("not confirmed: " + m["MPS95"]["not_confirmed"], done.stdout)
+        risk = m["fractured ribs, risk"]["risks"][0]
+        self.assertFalse(risk["confirmed"])
+        self.assertIn("not confirmed: " + risk["not_confirmed"], done.stdout)
         # what is not there is said, with the way to it
         self.assertIn("--part liver=", m["liver strain"]["missing"])
 
