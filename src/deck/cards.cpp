@@ -83,6 +83,11 @@ class CardReader {
   }
 
   void put(const Placement& p, Card& card) {
+    if (!place_functions(p, card))
+      context_.error(
+          "unit-not-converted", card.where, block_.keyword, "function",
+          "a unit factor of *INCLUDE_TRANSFORM reaches a function, whose units are not known",
+          "Convert the included file to the units of the deck");
     place(p, card, [&](const FieldSchema& f, const std::string& what) {
       if (!quiet_)
         context_.error("unit-not-converted", card.where_of_row(0), block_.keyword, f.name,
@@ -220,7 +225,7 @@ class CardReader {
   void convert(const FieldSchema& f, std::string_view source, double& value, std::string& text,
                bool& given) {
     if (f.type == FieldType::text) {
-      text = source;
+      text = f.name == "function" ? with_parameters(source) : std::string(source);
       if (source.size() > 1 && source[0] == '&' && f.width <= 20)
         if (const auto* p = context_.parameters.find(source.substr(1)))
           if (const auto* words = std::get_if<std::string>(p)) text = *words;
@@ -241,6 +246,29 @@ class CardReader {
       if (given) value = number;
     }
     if (!quiet_) check(f, value, text, given);
+  }
+
+  // A line of a function with the values of its &names.
+  std::string with_parameters(std::string_view source) const {
+    std::string out;
+    while (!source.empty()) {
+      const std::size_t mark = std::min(source.find('&'), source.size());
+      const bool operation = source.substr(mark).starts_with("&&");
+      std::size_t end = std::min(mark + (operation ? 2 : 1), source.size());
+      while (!operation && end < source.size() &&
+             (std::isalnum(static_cast<unsigned char>(source[end])) || source[end] == '_'))
+        ++end;
+      out += source.substr(0, mark);
+      const auto* p = end > mark + 1
+                          ? context_.parameters.find(source.substr(mark + 1, end - mark - 1))
+                          : nullptr;
+      if (p && !std::holds_alternative<std::string>(*p))
+        out += '(' + number_text(as_real(*p)) + ')';
+      else
+        out += source.substr(mark, end - mark);
+      source.remove_prefix(end);
+    }
+    return out;
   }
 
   void check(const FieldSchema& f, double value, const std::string& text, bool given) {

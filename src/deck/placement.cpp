@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <regex>
 
 namespace fabrica {
 namespace {
@@ -218,6 +219,26 @@ void place(const Placement& placement, Card& card,
     }
   card.values = std::move(values);
   card.table_ = std::move(table);
+}
+
+bool place_functions(const Placement& placement, Card& card) {
+  const std::string& keyword = card.schema->name;
+  if (!starts(keyword, "DEFINE_FUNCTION") && keyword != "DEFINE_CURVE_FUNCTION") return true;
+  if (placement.factors()) return false;
+  if (keyword != "DEFINE_CURVE_FUNCTION" || placement.function == 0) return true;
+  static const std::regex curve(R"(\b([Ll][Cc])(\d{1,15})\b)");
+  for (std::string& text : card.table_texts_) {
+    std::string out;
+    auto from = text.cbegin();
+    for (std::sregex_iterator m(text.begin(), text.end(), curve), none; m != none; ++m) {
+      out.append(from, (*m)[2].first);
+      out += std::to_string(std::stoll((*m)[2]) + placement.function);
+      from = (*m)[2].second;
+    }
+    out.append(from, text.cend());
+    text = std::move(out);
+  }
+  return true;
 }
 
 namespace {

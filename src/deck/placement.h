@@ -42,6 +42,10 @@ void place(const Placement& placement, Card& card,
 // kind of entity that a field of a keyword names or defines; empty if it is no id
 std::string_view id_kind(const Card& card, const FieldSchema& field, int row);
 
+// Moves the ids of curves (LC7) in the texts of functions; false if units would have to be
+// converted.
+bool place_functions(const Placement& placement, Card& card);
+
 // Moves points and directions of a card; false if the keyword has some that this program cannot
 // move.
 bool move_geometry(const Placement& placement, Card& card);

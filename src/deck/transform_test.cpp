@@ -152,6 +152,95 @@ TEST_CASE("include transform: a curve takes the units of the field that names it
   CHECK(at(9, 0.05) == doctest::Approx(1.5));
 }
 
+// A ramp of 3 filtered by the step of the table, an expression of it, and both in an include whose
+// ids are moved.
+TEST_CASE("functions become curves, with parameters, and their ids move with an include") {
+  const std::string functions = R"(*KEYWORD
+*DEFINE_FUNCTION_TABULATED
+        50
+ramp
+                 0.0                &low
+                 1.0               &high
+*DEFINE_FUNCTION
+        51,a name with a comma, and spaces
+float twice(float x, float y)
+{
+  if (x > 0 && y > 0) return &factor*x;
+  return 0;
+}
+*DEFINE_CURVE_FUNCTION_TITLE
+the inner curve
+         7
+twice(ramp(TIME), 1) + &low
+*DEFINE_CURVE_FUNCTION
+         8
+MIN(LC7,
+  4.0)*10
+*END
+)";
+  const std::string head =
+      "*KEYWORD\n*CONTROL_TERMINATION\n       2.0\n*PARAMETER\nR      low       1.0\n"
+      "R     high       3.0\nR   factor       2.0\n";
+  const Folder folder(
+      {{"f.k", functions},
+       {"main.k", head + "*INCLUDE\nf.k\n*END\n"},
+       {"moved.k", head + "*INCLUDE_TRANSFORM\nf.k\n         0         0         0         0       "
+                          "  0     1000\n\n\n\n*END\n"},
+       {"units.k",
+        head + "*INCLUDE_TRANSFORM\nf.k\n\n\n       1.0    1000.0    1000.0\n\n*END\n"}});
+  for (const auto& [file, offset] : {std::pair("main.k", 0), {"moved.k", 1000}}) {
+    CAPTURE(file);
+    Diagnostics d;
+    const auto model = read_deck(folder.path / file, d);
+    REQUIRE_MESSAGE(!d.has_errors(), all_of(d));
+    CHECK(d.count(Severity::unsupported) == 0);
+    const auto at = [&](std::int64_t id, double x) {
+      return model->curves.at(std::size_t(model->curve_index(id + offset))).at(x);
+    };
+    CHECK(at(7, 0.25) == doctest::Approx(2 * 1.5 + 1).epsilon(1e-5));
+    CHECK(at(7, 1.7) == doctest::Approx(2 * 3 + 1).epsilon(1e-5));
+    CHECK(at(8, 0.125) == doctest::Approx(10 * 3.5).epsilon(1e-5));
+    CHECK(at(8, 1.5) == doctest::Approx(40).epsilon(1e-5));
+  }
+  Diagnostics d;
+  read_deck(folder.path / "units.k", d);
+  CHECK(all_of(d).find("reaches a function, whose units are not known") != std::string::npos);
+}
+
+TEST_CASE("functions that cannot be evaluated are named with their line") {
+  const Folder folder(std::map<std::string, std::string>{{"main.k", R"(*KEYWORD
+*CONTROL_TERMINATION
+       2.0
+*DEFINE_CURVE_FUNCTION
+         7
+MAX(SENSORD(3)-1,0)
+*DEFINE_CURVE_FUNCTION
+         8
+1 + LC9
+*DEFINE_CURVE_FUNCTION
+         9
+1 + LC8
+*DEFINE_CURVE_FUNCTION
+        10
+1 +
+*DEFINE_FUNCTION
+        11
+broken
+float f(float x) { printf("x"); return x; }
+*END
+)"}});
+  Diagnostics d;
+  read_deck(folder.path / "main.k", d);
+  const std::string said = all_of(d);
+  for (const char* part :
+       {"main.k:4: unsupported [function-not-evaluated] *DEFINE_CURVE_FUNCTION, field function: "
+        "curve 7: sensord is not evaluated",
+        "curve 8: there is no curve 9 that is evaluated",
+        "[bad-function] *DEFINE_CURVE_FUNCTION, field function: curve 10: a number or a name",
+        "function 11: "})
+    CHECK_MESSAGE(said.find(part) != std::string::npos, part, "\n", said);
+}
+
 TEST_CASE("include transform: a curve whose units are not known is an error that says why") {
   const std::string curve =
       "*DEFINE_CURVE\n         5\n                 0.0               100.0\n"

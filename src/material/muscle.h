@@ -121,8 +121,8 @@ struct Muscle {
     for (char& letter : name) letter = char(letter - 'a' + 'A');
     throw std::invalid_argument(
         name + " names curve " + std::to_string(-p.integer(field)) +
-        ", which is not a *DEFINE_CURVE of the model; define it by points (functions are not "
-        "evaluated)");
+        ", which is not a curve of the model; define it by points, or by a function that is "
+        "evaluated");
   }
   // t(n), summed with compensation so that a long run keeps its time in single precision
   template <class L>

@@ -67,7 +67,7 @@ void Resolver::run() {
   // what the rest refers to
   read_all({{"DEFINE_CURVE", &R::read_curve},
             {"DEFINE_CURVE_SMOOTH", &R::read_smooth_curve},
-            {"DEFINE_CURVE_FUNCTION", &R::read_function},
+            {"DEFINE_CURVE_FUNCTION", &R::read_curve_function},
             {"DEFINE_FUNCTION", &R::read_function},
             {"DEFINE_FUNCTION_TABULATED", &R::read_function},
             {"DEFINE_BOX", &R::read_box},
@@ -79,6 +79,7 @@ void Resolver::run() {
   read_all({{"DEFINE_TABLE", &R::read_table},
             {"DEFINE_TABLE_2D", &R::read_table},
             {"DEFINE_VECTOR", &R::read_vector}});
+  resolve_functions();
   finish_curves();
   finish_tables();
   read_all({{"CONTROL_*", &R::read_control}});

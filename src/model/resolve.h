@@ -12,6 +12,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "model/function.h"
 #include "model/id_table.h"
 #include "model/model.h"
 
@@ -80,6 +81,10 @@ class Resolver {
   void read_curve(const Card& card);
   void read_smooth_curve(const Card& card);
   void read_function(const Card& card);
+  void read_curve_function(const Card& card);
+  void resolve_functions();
+  void add_function(FunctionLibrary& library, const Card& card);
+  void tabulate(FunctionLibrary& library, const Card& card, double end);
   void read_table(const Card& card);
   void read_box(const Card& card);
   void read_coordinate_system(const Card& card);
@@ -197,7 +202,9 @@ class Resolver {
   std::map<std::string, IdTable, std::less<>> tables_;
   std::map<std::pair<std::string, Severity>, int> reports_;
   bool files_missing_ = false;
-  std::vector<const Card*> table_cards_;
+  std::vector<const Card*> table_cards_, function_cards_;
+  // *DEFINE_CURVE_FUNCTION: of each curve, its card; null while it is evaluated and afterwards
+  std::map<std::int64_t, const Card*> curve_functions_;
   std::unordered_map<const Card*, int> card_index_;
   std::vector<Vec3d> vectors_;
   std::vector<Hourglass> hourglasses_;

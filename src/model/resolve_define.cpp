@@ -112,13 +112,6 @@ void Resolver::finish_curves() {
   }
 }
 
-// Functions are not computed; their ids are known so that those who name them are not told they are
-// missing.
-void Resolver::read_function(const Card& card) {
-  const char* id = card.has_field("fid") ? "fid" : "lcid";
-  define("function", card.id(id), card_index_[&card], card, id);
-}
-
 void Resolver::read_table(const Card& card) {
   const std::int64_t id = card.id("tbid");
   if (!define("table", id, int(model_.tables.size()), card, "tbid")) return;

@@ -43,6 +43,18 @@ class Run:
         return values
 
 
+def muscle(program, deck):
+    """A muscle held at 0.7565 of its optimal length: PIS (a f g + h) with the deck's f = 0.85212, g = 1.00011 and
+    h = 0.021604. Its activation passes two filters of 40 ms, functions in C, after a step of 1 ms at 0.341 s."""
+    run = Run(program, deck, "isometric muscle", 4.1)
+    peak, active, passive = 40.2658, 0.85212 * 1.00011, 0.021604
+    for t, force in zip(run.column("elout_beam", "time"), run.column("elout_beam", "axial:1")):
+        if 0.35 < t < 0.6 or t > 4.09:
+            x = (t - 0.3415) / 0.04
+            expected = peak * ((1 - (1 + x) * math.exp(-x)) * active + passive)
+            check(f"isometric muscle force at {t:.2f} s", force, expected - 0.002 * peak, expected + 0.002 * peak)
+
+
 def main():
     program = sys.argv[1]
     shared = os.environ.get("FABRICA_SHARED", sys.argv[2])
@@ -66,6 +78,7 @@ def main():
         bar = Run(program, f"{decks}/pydyna-taylor-bar/taylor_bar_v{speed}.k", f"Taylor bar {speed} m/s", 8e-5)
         kinetic = bar.column("glstat", "kinetic_energy")
         check(f"Taylor bar {speed} m/s kinetic energy used up", kinetic[-1] / kinetic[0], 0, 0.01)
+    muscle(program, f"{decks}/muscle-mat156-millard2024/MPP_R931/mat156/force_velocity/isometric_max/isometric_max.k")
     print(f"{len(failures)} failures")
     return 1 if failures else 0
 
