@@ -58,10 +58,11 @@ void set_parameter(Subject& s, const std::string& text) {
   const double number = std::strtod(value.c_str(), &end);
   const auto n = numbers.find(name);
   if (n == numbers.end() || value.empty() || *end != '\0' || !std::isfinite(number))
-    throw SignalError("unknown-parameter", "'" + text + "' is not NAME=VALUE of a setting",
-                      "There are: age, chest_depth_mm, vc_factor, neck_arm_mm, csdm_strain, rib_strain "
-                      "(numbers), neck (H3-50M, "
-                      "H3-05F, THOR-50M), leg (H3-50M, THOR-50M, H3-05F, H3-95M, revised)");
+    throw SignalError(
+        "unknown-parameter", "'" + text + "' is not NAME=VALUE of a setting",
+        "There are: age, chest_depth_mm, vc_factor, neck_arm_mm, csdm_strain, rib_strain "
+        "(numbers), neck (H3-50M, "
+        "H3-05F, THOR-50M), leg (H3-50M, THOR-50M, H3-05F, H3-95M, revised)");
   *n->second = number;
 }
 

@@ -160,7 +160,10 @@ std::string case_page(const Case& c, const Outcome& o, const PageExtras& e) {
   body += check_section(o);
   if (!e.energies.empty()) {
     Chart energy{.id = "energies", .x = with_unit("time", c.time_unit), .y = "energy"};
-    for (const auto& [name, curve] : e.energies) energy.traces.push_back({name, curve.x, curve.y});
+    for (auto [name, curve] : e.energies) {
+      std::replace(name.begin(), name.end(), '_', ' ');
+      energy.traces.push_back({name, curve.x, curve.y});
+    }
     body += "<h2>Energies</h2>\n" + place_of(energy);
     charts.push_back(energy);
   }

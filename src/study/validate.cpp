@@ -69,6 +69,12 @@ void run_cases(std::vector<Work>& all, const ValidateOptions& o) {
   });
 }
 
+// Why a run ended: as it says itself, else the last that it printed.
+std::string why_ended(const ordered_json& summary, const std::string& log) {
+  if (summary.contains("ending")) return summary["ending"].get<std::string>();
+  return last_line(log);
+}
+
 // what the run left behind: times, summary, energies
 void read_run(Work& w, Channels& channels, PageExtras& extras) {
   const RunRecord run = read_record(w.folder);
@@ -84,11 +90,11 @@ void read_run(Work& w, Channels& channels, PageExtras& extras) {
   if (run.status != 0)
     throw StudyError(w.deck, 0, "",
                      fmt::format("the run ended with status {}: {}", run.status,
-                                 last_line(w.folder + "/run.log")),
+                                 why_ended(w.outcome.summary, w.folder + "/run.log")),
                      "Read " + w.folder + "/run.log");
   extras.files = w.files;
   for (const char* name : {"kinetic_energy", "internal_energy", "hourglass_energy",
-                           "sliding_interface_energy", "total_energy"})
+                           "sliding_interface_energy", "eroded_internal_energy", "total_energy"})
     try {
       const std::string text = std::string("glstat:") + name;
       extras.energies.push_back({name, {channels.abscissa(text), channels.column(text)}});

@@ -179,8 +179,8 @@ Polyline curve_of(const Parameters& p, const char* field) {
   if (c) return Polyline(c);
   throw std::invalid_argument(
       "the field " + std::string(field) + " names curve " + std::to_string(-p.integer(field)) +
-      ", which is not a *DEFINE_CURVE of the model; define it by points (functions are not "
-      "evaluated)");
+      ", which is not a curve of the model; define it by points, or by a function that is "
+      "evaluated");
 }
 }  // namespace
 

@@ -309,7 +309,7 @@ std::vector<std::pair<std::string, Rgb>> legend_entries(const Snapshots& s,
     if (!seen[i]) continue;
     const std::string name =
         s.part_title[i].empty() ? fmt::format("part {}", s.part_id[i]) : s.part_title[i];
-    out.emplace_back(shortened(name, 24), distinct_color(int(i)));
+    out.emplace_back(shortened(name, 34), distinct_color(int(i)));
   }
   return out;
 }
@@ -386,7 +386,7 @@ void draw(const PictureOptions& o) {
   double strip = by_part ? 0 : 120;
   if (legend)
     for (const auto& [name, color] : entries)
-      strip = std::max(strip, 56 + 7.6 * double(name.size()));
+      strip = std::max(strip, 56 + 7.2 * double(name.size()));
 
   const std::array<double, 6> e = extent(panels, axes);
   const double shape = std::max(e[1] - e[0], 1e-30) / std::max(e[3] - e[2], 1e-30);
