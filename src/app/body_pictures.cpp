@@ -25,7 +25,7 @@ const std::vector<std::array<unsigned char, 3>> palette = {
 
 struct View {
   std::string name, direction;
-  double width, height;  // pixels
+  double width, height;  // pixels, at most
   std::function<bool(const PlacedBone&)> take;
   bool pieces = true;
   std::function<bool(const Point&)> keep = {};  // bricks and lines by their centre; empty: all
@@ -63,10 +63,10 @@ std::vector<View> views(const Body& body) {
   const auto right_half = [](const Point& x) { return x.y < 0; };
   const auto trunk = [](const PlacedBone& b) { return b.region == body::Region::thorax; };
   return {
-      {"front", "front", 480, 1000, all},
-      {"side", "right", 420, 1000, all},
-      {"back", "back", 480, 1000, all},
-      {"oblique", "1,-0.8,0.3", 560, 900, all},
+      {"front", "front", 1000, 1000, all},
+      {"side", "right", 1000, 1000, all},
+      {"back", "back", 1000, 1000, all},
+      {"oblique", "1,-0.8,0.3", 900, 900, all},
       {"thorax", "1,-0.5,0.2", 620, 620, trunk},
       {"thorax_back", "-1,-0.6,0.3", 620, 620, trunk},
       {"pelvis", "1,-0.5,0.5", 620, 560,
@@ -230,7 +230,7 @@ std::vector<std::string> draw_body(const Body& body, const std::string& folder) 
     PictureOptions picture;
     picture.input = state, picture.output = folder + "/" + view.name + ".png";
     picture.view = view.direction;
-    picture.width = int(view.width), picture.height = int(view.height);
+    picture.width = int(view.width), picture.height = int(view.height), picture.trim = true;
     picture.edges = view.layers, picture.caption = false;
     picture.feature_angle = 175, picture.palette = colors_of(mesh);
     render_picture(picture);

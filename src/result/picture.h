@@ -26,6 +26,7 @@ struct PictureOptions {
   std::string view = "iso";
   double zoom = 1;
   int width = 1200, height = 800;
+  bool trim = false;  // width and height are what it may measure at most, and nothing stays empty
   std::optional<bool> edges;  // element edges; default: for up to 20000 faces
   // where faces meet at less than this they are shaded as one smooth surface [deg], and no outline
   // is drawn

@@ -294,6 +294,17 @@ Layout arrange(const PictureOptions& o, int panels, double aspect, double legend
   return best;
 }
 
+// Takes from the picture what its panels, wide over high, would leave empty.
+void trim(PictureOptions& o, int panels, double aspect, double legend) {
+  const Layout l = arrange(o, panels, aspect, legend);
+  const double w = (o.width - l.legend) / l.columns, h = (o.height - l.top) / l.rows - l.caption;
+  const double least = 0.2 * std::min(w, h);
+  if (w > h * aspect)
+    o.width = int(std::lround(l.legend + l.columns * std::max(h * aspect, least)));
+  else
+    o.height = int(std::lround(l.top + l.rows * (l.caption + std::max(w / aspect, least))));
+}
+
 // Entries "title (id)" of the parts that are seen.
 std::vector<std::pair<std::string, Rgb>> legend_entries(const Snapshots& s,
                                                         const std::vector<Panel>& panels) {
@@ -366,7 +377,7 @@ void write_png(vtkRenderWindow* window, const PictureOptions& o) {
   if (writer->GetErrorCode() != 0) throw std::runtime_error("cannot write " + o.output);
 }
 
-void draw(const PictureOptions& o) {
+void draw(PictureOptions o) {
   if (o.width < 64 || o.height < 64 || o.width > 8000 || o.height > 8000 || !(o.zoom > 0))
     throw std::runtime_error("a picture is 64 to 8000 pixels wide and high, and zoom is positive");
   const Axes axes = make_axes(o.view);
@@ -390,6 +401,7 @@ void draw(const PictureOptions& o) {
 
   const std::array<double, 6> e = extent(panels, axes);
   const double shape = std::max(e[1] - e[0], 1e-30) / std::max(e[3] - e[2], 1e-30);
+  if (o.trim) trim(o, int(panels.size()), shape, strip);
   const Layout l = arrange(o, int(panels.size()), shape, strip);
   const double cell_w = (o.width - l.legend) / l.columns, cell_h = (o.height - l.top) / l.rows;
 

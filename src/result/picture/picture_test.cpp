@@ -105,6 +105,14 @@ TEST_CASE(
     CHECK(right[0] > 1.5 * right[2]);
     CHECK(corner == std::array<int, 3>{255, 255, 255});
 
+    // two bricks of 2 x 1 beside the scale of 120 pixels and a margin: 280 x 140, and 10 above
+    o.width = 400, o.height = 400, o.trim = true;
+    render_picture(o);
+    Image trimmed(o.output);
+    CHECK(trimmed.width == 400);
+    CHECK(trimmed.height == doctest::Approx(150).epsilon(0.02));
+    o.height = 200, o.trim = false;
+
     // the second brick is deleted at t = 1: half the area of the panel goes
     o.color = "part";
     o.states.clear();
