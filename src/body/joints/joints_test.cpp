@@ -110,6 +110,18 @@ TEST_CASE("a bone that others do not hold moves whole instead of being pressed s
   CHECK(volume == Approx(125).epsilon(0.03));
 }
 
+// The corner of a fingertip reaches into the side of the bone before it, whose face would push it
+// off sideways: it moves along the line through their middles.
+TEST_CASE("a phalanx is moved along its ray") {
+  std::vector<PlacedBone> bones{block("hand_phalanx2_middle", {0, 0, 0}, 6, 2),
+                                block("hand_phalanx2_distal", {4.6, 4.8, 0.5}, 5, 2)};
+  const Point line{4.6 + 2.5 - 3, 4.8 + 2.5 - 3, 0};
+  clear_bones(bones);
+  const Point moved = bones[1].placement.t;
+  CHECK(norm(moved) > 0.3);
+  CHECK(norm(cross(moved, line)) < 1e-6 * norm(moved) * norm(line));
+}
+
 // A cube of 27 bricks of 4 mm: an inner node of its upper face goes aside by 2 mm, so that two
 // shells have an area of 12 mm2 on sides of at most sqrt(20) mm. A node off its plane by d costs
 // 100 (d / 4 mm)^2, a shell at its wish 1: nodes stay within 0.4 mm of the face.

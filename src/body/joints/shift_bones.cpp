@@ -81,6 +81,7 @@ int depth_of(std::string bone) {
 // a bone and all that hangs on it
 struct Group {
   int root;
+  int ray_from;  // of a phalanx: the bone that it prolongs; else -1
   std::vector<int> bones;
   std::vector<char> member;
 };
@@ -90,11 +91,15 @@ std::vector<Group> groups_of(const std::vector<PlacedBone>& bones) {
   for (int i = 0; i < int(bones.size()); ++i) {
     const PlacedBone& root = bones[std::size_t(i)];
     if (carrier(root.mesh.name).empty()) continue;
-    Group group{i, {}, std::vector<char>(bones.size(), 0)};
-    for (int k = 0; k < int(bones.size()); ++k)
-      if (bones[std::size_t(k)].side == root.side &&
-          hangs_on(bones[std::size_t(k)].mesh.name, root.mesh.name))
+    Group group{i, -1, {}, std::vector<char>(bones.size(), 0)};
+    const bool ray = root.mesh.name.find("phalanx") != std::string::npos;
+    for (int k = 0; k < int(bones.size()); ++k) {
+      const PlacedBone& other = bones[std::size_t(k)];
+      if (other.side != root.side) continue;
+      if (hangs_on(other.mesh.name, root.mesh.name))
         group.bones.push_back(k), group.member[std::size_t(k)] = 1;
+      if (ray && other.mesh.name == carrier(root.mesh.name)) group.ray_from = k;
+    }
     groups.push_back(group);
   }
   // from the trunk outwards
@@ -105,9 +110,16 @@ std::vector<Group> groups_of(const std::vector<PlacedBone>& bones) {
   return groups;
 }
 
-// (1) for one group
-Point wish_of(const Group& group, const Surfaces& surfaces, const std::vector<NearPair>& pairs,
-              bool midline) {
+Point middle_of(const PlacedBone& bone) {
+  Point sum{0, 0, 0};
+  for (const Point& p : bone.nodes) sum += p;
+  return (1.0 / double(bone.nodes.size())) * sum;
+}
+
+// (1) for one group. A phalanx moves along its ray alone: the ends of two bones in line lean
+// against each other, and free to choose one would slip off the other sideways.
+Point wish_of(const Group& group, const std::vector<PlacedBone>& bones, const Surfaces& surfaces,
+              const std::vector<NearPair>& pairs) {
   Mat3d m{};
   Point rhs{0, 0, 0};
   int count = 0;
@@ -124,7 +136,13 @@ Point wish_of(const Group& group, const Surfaces& surfaces, const std::vector<Ne
   }
   if (count == 0) return {0, 0, 0};
   for (int i = 0; i < 3; ++i) m(i, i) += softness * count;
-  if (midline) {  // stays in the plane of symmetry
+  if (group.ray_from >= 0) {
+    const Point chord =
+        middle_of(bones[std::size_t(group.root)]) - middle_of(bones[std::size_t(group.ray_from)]);
+    const Point along = (1.0 / norm(chord)) * chord;
+    return (dot(rhs, along) / dot(along, m * along)) * along;
+  }
+  if (bones[std::size_t(group.root)].side == Side::midline) {  // stays in the plane of symmetry
     for (int i = 0; i < 3; ++i)
       if (i != 1) m(1, i) = m(i, 1) = 0;
     rhs.y = 0;
@@ -150,8 +168,7 @@ LargestShift shift_bones(std::vector<PlacedBone>& bones, const std::vector<Artic
       const PlacedBone& root = bones[std::size_t(group.root)];
       const bool paired = twins[std::size_t(group.root)] >= 0;
       if (paired && root.side == Side::left) continue;
-      const Point wish =
-          wish_of(group, surfaces, surfaces.near(joints), root.side == Side::midline);
+      const Point wish = wish_of(group, bones, surfaces, surfaces.near(joints));
       const double limit = root.mesh.name == "scapula" ? most_free : most;
       const double room = std::max(limit - norm(own[std::size_t(group.root)]), 0.0),
                    length = norm(wish);
