@@ -13,11 +13,12 @@ namespace {
 std::string figure(double v) { return fmt::format("{:.5g}", v); }
 std::string rating(double v) { return fmt::format("{:.3f}", v); }
 std::string marked(State s) { return fmt::format("<span class=\"{0}\">{0}</span>", state_name(s)); }
+bool is_plain(const std::string& unit) { return unit.empty() || unit == "1" || unit == "-"; }
 std::string with_unit(const std::string& name, const std::string& unit) {
-  return unit.empty() || unit == "1" ? name : name + " [" + unit + "]";
+  return is_plain(unit) ? name : name + " [" + unit + "]";
 }
 std::string figure(double v, const std::string& unit) {
-  return figure(v) + (unit == "1" ? "" : " " + escaped(unit));
+  return figure(v) + (is_plain(unit) ? "" : " " + escaped(unit));
 }
 std::string method_name(const std::string& method) {
   return method == "cora" ? "CORA 3.6" : method == "iso18571" ? "ISO/TS 18571:2014" : method;

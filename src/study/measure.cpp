@@ -13,6 +13,7 @@ namespace {
 
 std::string bound_of(const CheckSpec& c) {
   if (c.expected) {
+    if (c.tolerance == 0) return fmt::format("{:.6g}", *c.expected);
     if (*c.expected == 0) return fmt::format("0 within {:.3g}", c.tolerance);
     return fmt::format("{:.6g} within {:.3g} %", *c.expected, 100 * c.tolerance);
   }
