@@ -76,15 +76,24 @@ void draw(const FilterCommand& c, const std::vector<Signal>& inputs,
   PlotOptions o;
   o.output = c.plot;
   std::vector<PlotCurve> curves;
+  const auto add_inputs = [&] {
+    for (std::size_t i = 0; i < inputs.size(); ++i)
+      curves.push_back(
+          {i < c.inputs.size() ? c.inputs[i] : inputs[i].name, inputs[i].x, inputs[i].y});
+  };
+  o.x_label = fmt::format("time [{}]", result[0].x_unit);
   if (c.corridor == "arc-length") {
-    for (const Signal& s : inputs) curves.push_back({s.name, s.x, s.y});
+    add_inputs();
     for (std::size_t i = 0; i + 1 < result.size(); i += 2)
       curves.push_back(
           {result[i].name.substr(0, result[i].name.find('_')), result[i].y, result[i + 1].y, true});
     o.x_label = fmt::format("x [{}]", inputs[0].x_unit);
+  } else if (c.corridor == "mean") {
+    add_inputs();
+    for (std::size_t i = 0; i < 3; ++i)  // without the deviation
+      curves.push_back({i == 0 ? "mean" : result[i].name, result[i].x, result[i].y, true});
   } else {
     for (const Signal& s : result) curves.push_back({s.name, s.x, s.y});
-    o.x_label = fmt::format("time [{}]", result[0].x_unit);
   }
   o.y_label = fmt::format("[{}]", inputs[0].unit);
   draw_curves(o, curves);

@@ -35,6 +35,12 @@ std::pair<double, double> bounds(const std::vector<PlotCurve>& curves,
   return {low, high};
 }
 
+// of the n-th dashed curve: black, then lighter and lighter
+Rgb dashed_color(int n) {
+  const auto grey = static_cast<unsigned char>(30 + 55 * std::min(n, 3));
+  return {grey, grey, grey};
+}
+
 // the parts of a curve inside the frame; gaps where it is not a number
 void add_curve(Drawing& d, const Frame& f, const PlotCurve& c, const Rgb& color) {
   Stroke s{{}, {}, color, c.dashed ? 1.8 : 2.0, c.dashed};
@@ -178,8 +184,9 @@ Drawing make_chart(const PlotOptions& o, const std::vector<PlotCurve>& curves) {
   if (f.bottom - f.top < 40) throw std::runtime_error("too many curves for a chart of this height");
 
   add_axes(d, f, xs, ys);
+  int dashed = 0;
   for (std::size_t i = 0; i < curves.size(); ++i) {
-    const Rgb color = curves[i].dashed ? Rgb{30, 30, 34} : distinct_color(int(i));
+    const Rgb color = curves[i].dashed ? dashed_color(dashed++) : distinct_color(int(i));
     add_curve(d, f, curves[i], color);
     if (!legend) continue;
     const double x = left + entry * double(int(i) % columns),
