@@ -18,10 +18,19 @@ using body::PlacedBone;
 using body::Point;
 
 // what is drawn in one colour
-enum Tissue { bone = 1, second_bone, outer_table, diploe, inner_table, cartilage, ligament };
+enum Tissue {
+  bone = 1,
+  second_bone,
+  outer_table,
+  diploe,
+  inner_table,
+  cartilage,
+  meniscus,
+  ligament
+};
 const std::vector<std::array<unsigned char, 3>> palette = {
     {232, 220, 196}, {205, 178, 140}, {214, 190, 150}, {196, 120, 90},
-    {170, 140, 100}, {130, 170, 205}, {176, 60, 60}};
+    {170, 140, 100}, {130, 170, 205}, {120, 175, 150}, {176, 60, 60}};
 
 struct View {
   std::string name, direction;
@@ -73,6 +82,8 @@ std::vector<View> views(const Body& body) {
        [](const PlacedBone& b) { return b.region == body::Region::pelvis || b.mesh.name == "L5"; }},
       {"knee", "1,-0.7,0.3", 600, 700, limb("leg", {"femur", "tibia", "fibula", "patella"}), true,
        [knee](const Point& x) { return norm(x - knee) < 130; }},
+      {"knee_plateau", "0.5,-0.2,1", 700, 560, limb("leg", {"tibia", "fibula"}), true,
+       [knee](const Point& x) { return norm(x - knee) < 90; }},
       {"shoulder", "1,-0.7,0.3", 700, 600, limb("arm", {"clavicle", "scapula", "humerus"}), true,
        [shoulder](const Point& x) { return norm(x - shoulder) < 190; }},
       {"hand", "1,-0.3,0.2", 700, 800,
@@ -168,17 +179,25 @@ class Scene {
                                        : n.x);
       }
       if (!shown || !connected_to_shown(piece)) continue;
-      if (!piece.bricks.empty()) surface(nodes, piece.bricks, cartilage);
+      if (!piece.bricks.empty())
+        surface(nodes, piece.bricks, piece.material == "meniscus" ? meniscus : cartilage);
       for (const auto& q : piece.quads) {
         if (!keep(0.5 * (nodes[std::size_t(q[0])] + nodes[std::size_t(q[2])]))) continue;
         std::array<int, 4> corners{};
         for (std::size_t k = 0; k < 4; ++k) corners[k] = node(nodes[std::size_t(q[k])]);
         quad(corners, ligament);
       }
+      // fibres of a layer lie in its bricks
+      if (on_one_bone(piece)) continue;
       for (const auto& l : piece.lines) line(nodes[std::size_t(l[0])], nodes[std::size_t(l[1])]);
     }
   }
+  static bool on_one_bone(const Piece& piece) {
+    return !piece.bone_a.empty() && piece.bone_a == piece.bone_b &&
+           (piece.material == "meniscus" || piece.name.ends_with("_meniscus.fibres"));
+  }
   bool connected_to_shown(const Piece& piece) const {
+    if (on_one_bone(piece)) return true;
     for (const body::PieceNode& n : piece.nodes)
       if (n.bone >= 0 || n.piece >= 0) return true;
     return false;

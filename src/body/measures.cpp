@@ -275,6 +275,21 @@ std::string bones_table(const Body& body) {
   return text;
 }
 
+std::string menisci_table(const Body& body) {
+  if (body.joined.menisci.empty()) return "";
+  std::string text =
+      "\n## Menisci\n\nAs meshed, horns left out. Drawn in: largest by which the inner edge gives "
+      "way to bones that stand too close.\n\n"
+      "| meniscus | bricks | without room | volume cm3 | rim mm | inner edge mm | height of the "
+      "rim "
+      "mm | drawn in mm | SJ min |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
+  for (const MeniscusReport& m : body.joined.menisci)
+    text += fmt::format("| {} | {} | {} | {:.2f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.2f} |\n",
+                        m.name, m.bricks, m.without_room, m.volume / 1000, m.rim_length,
+                        m.inner_length, m.rim_height, m.drawn_in, m.least_scaled_jacobian);
+  return text;
+}
+
 std::string smallest_table(const AssembledBody& assembled, const Model& model,
                            const CheckReport& check) {
   std::unordered_map<std::int64_t, std::string> names;
@@ -338,7 +353,7 @@ std::string measures_text(const Body& body, const AssembledBody& assembled, cons
                         !m.required ? "-"
                         : m.holds   ? "yes"
                                     : "**no**");
-  return text + smallest_table(assembled, model, check) + bones_table(body) +
+  return text + smallest_table(assembled, model, check) + bones_table(body) + menisci_table(body) +
          parts_table(assembled, check);
 }
 

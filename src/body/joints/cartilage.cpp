@@ -11,6 +11,7 @@
 #include "body/joints/bone_surface.h"
 #include "body/joints/joint_law.h"
 #include "body/joints/ligaments.h"
+#include "body/joints/meniscus.h"
 #include "body/joints/piece_builder.h"
 #include "body/mesh/distance_field.h"
 #include "body/mesh/quality.h"
@@ -21,6 +22,8 @@ namespace {
 
 constexpr double contact_gap = 0.1;      // [mm] left between layers of cartilage
 constexpr double thinnest = 0.15;        // [mm] of a layer
+constexpr double touching = 0.02;        // [mm] before a face that counts as behind it
+constexpr double under_meniscus = 1;     // [mm] of a layer that leaves room for a meniscus
 constexpr double least_jacobian = 0.36;  // of its bricks
 constexpr double capsule_length = 8;     // [mm] reference length of capsules without a row
 
@@ -138,6 +141,10 @@ std::vector<std::array<PieceNode, 4>> ArticulationMaker::layer(const Articulatio
     return faces;
   }
   const PlacedBone& here = bone(index);
+  const bool knee = here.mesh.name == "femur" && bone(other).mesh.name == "tibia";
+  const int tibia = knee                                                            ? other
+                    : bone(other).mesh.name == "femur" && here.mesh.name == "tibia" ? index
+                                                                                    : -1;
   std::map<int, Point> normals;
   for (int q : patch.quads) {
     const auto& s = here.mesh.surface[std::size_t(q)];
@@ -160,7 +167,10 @@ std::vector<std::array<PieceNode, 4>> ArticulationMaker::layer(const Articulatio
       crowded.insert(node);
       continue;
     }
-    const double thickness = std::clamp(room, thinnest, cartilage);
+    const double meniscus = tibia < 0 ? 0 : meniscus_height(bone(tibia), p);
+    const double beside =
+        meniscus > 0 ? std::max(room - 0.5 * meniscus, under_meniscus) : cartilage;
+    const double thickness = std::clamp(std::min(room, beside), thinnest, cartilage);
     gap = std::min(gap, distance - 2 * thickness);
     top[node] = p + thickness * normal;
   }
@@ -196,20 +206,6 @@ std::vector<std::array<PieceNode, 4>> ArticulationMaker::layer(const Articulatio
   return faces;
 }
 
-// Does p stand less than 0.02 mm before a face or up to 3 mm behind it? Either diagonal counts, for
-// a warped face lies between the two.
-bool behind(const Point& p, const std::array<Point, 4>& face) {
-  static constexpr int triangles[4][3] = {{0, 1, 2}, {0, 2, 3}, {0, 1, 3}, {1, 2, 3}};
-  return std::any_of(std::begin(triangles), std::end(triangles), [&](const int(&t)[3]) {
-    const Point &a = face[std::size_t(t[0])], &b = face[std::size_t(t[1])],
-                &c = face[std::size_t(t[2])];
-    const Point normal = cross(b - a, c - a), to = p - closest_on_triangle(p, a, b, c);
-    const double length = norm(normal), along = length > 0 ? dot(to, normal) / length : 0;
-    const double aside2 = dot(to, to) - along * along;
-    return length > 0 && aside2 < 1e-6 && along < 0.02 && along > -3;
-  });
-}
-
 // Takes out the faces with a corner behind the other side's faces: a contact starts without
 // penetration.
 void take_out_penetrating(std::vector<std::array<PieceNode, 4>>& faces,
@@ -217,7 +213,7 @@ void take_out_penetrating(std::vector<std::array<PieceNode, 4>>& faces,
   std::erase_if(faces, [&](const std::array<PieceNode, 4>& face) {
     return std::any_of(face.begin(), face.end(), [&](const PieceNode& n) {
       return std::any_of(others.begin(), others.end(), [&](const auto& other) {
-        return behind(n.x, {other[0].x, other[1].x, other[2].x, other[3].x});
+        return behind(n.x, {other[0].x, other[1].x, other[2].x, other[3].x}, touching);
       });
     });
   });

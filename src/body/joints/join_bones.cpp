@@ -32,6 +32,7 @@ BetweenBones join_bones(std::vector<PlacedBone>& bones, JoinReport& report) {
   report.clearance = clear_bones(bones);
   report.discs = add_discs(bones, between);
   report.articulations = add_articulations(bones, between);
+  report.menisci = add_menisci(bones, between);
   report.ligaments = add_ligaments(bones, between);
   return between;
 }

@@ -3,6 +3,7 @@
 #include "body/joints/cartilage.h"
 #include "body/joints/disc.h"
 #include "body/joints/ligaments.h"
+#include "body/joints/meniscus.h"
 
 namespace fabrica::body {
 
@@ -12,10 +13,11 @@ struct JoinReport {
   std::vector<DiscReport> discs;
   std::vector<ArticulationReport> articulations;
   std::vector<LigamentReport> ligaments;
+  std::vector<MeniscusReport> menisci;
 };
 
 // Fits endplates, clears the bones from one another (both move nodes of the bones), then adds
-// discs, joints by surfaces and ligaments. Throws BodyError that names what does not fit.
+// discs, joints by surfaces, menisci and ligaments. Throws BodyError that names what does not fit.
 BetweenBones join_bones(std::vector<PlacedBone>& bones, JoinReport& report);
 
 // Bones and pieces that nothing connects with the rest, over shared nodes, ties, contacts,

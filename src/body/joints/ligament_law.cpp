@@ -34,4 +34,9 @@ Law ligament_curve(const LigamentStiffness& law, int strands, const std::string&
   return curve;
 }
 
+Law pull_only(const std::string& source, const std::string& flag) {
+  return {"MAT_SPRING_NONLINEAR_ELASTIC",     {},     "lcd",
+          {{-1000, 0}, {0, 0}, {1000, 1000}}, source, flag};
+}
+
 }  // namespace fabrica::body

@@ -23,4 +23,8 @@ double ligament_force(const LigamentStiffness& law, double elongation);
 Law ligament_curve(const LigamentStiffness& law, int strands, const std::string& source,
                    const std::string& flag);
 
+// *MAT_SPRING_NONLINEAR_ELASTIC of 1 kN/mm under tension, nothing under compression; the scale of a
+// line is its stiffness
+Law pull_only(const std::string& source, const std::string& flag);
+
 }  // namespace fabrica::body

@@ -1,0 +1,90 @@
+#include "body/joints/meniscus_plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "body/tables.h"
+
+namespace fabrica::body {
+
+namespace {
+
+constexpr int pieces = 96;  // of the curves, where lengths and areas are summed
+
+// Catmull and Rom between b and c
+double spline(double a, double b, double c, double d, double t) {
+  return b + 0.5 * t * (c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a)));
+}
+
+double cross2(const PlanPoint& o, const PlanPoint& a, const PlanPoint& b) {
+  return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
+}
+
+}  // namespace
+
+MeniscusPlan::MeniscusPlan(const std::string& name, const Point& scale) : name_(name) {
+  const Table table("anatomy/joints/menisci.csv");
+  const auto place = [&](int row, const char* x, const char* y) {
+    return PlanPoint{scale.x * table.number(row, x), scale.y * table.number(row, y)};
+  };
+  for (int row = 0; row < table.rows(); ++row)
+    if (table.text(row, "meniscus") == name)
+      stations_.push_back({place(row, "inner_x", "inner_y"), place(row, "outer_x", "outer_y"),
+                           scale.z * table.number(row, "height")});
+  if (stations_.size() < 4)
+    throw BodyError("anatomy/joints/menisci.csv: meniscus \"" + name + "\" has " +
+                    std::to_string(stations_.size()) + " stations, at least 4 are needed");
+}
+
+MeniscusPlan::Station MeniscusPlan::station(double s) const {
+  const int last = int(stations_.size()) - 1;
+  const double at = std::clamp(s, 0.0, 1.0) * last;
+  const int i = std::min(int(at), last - 1);
+  const auto of = [&](auto value) {
+    const auto kept = [&](int k) { return value(stations_[std::size_t(std::clamp(k, 0, last))]); };
+    // beyond the ends the curve goes straight on
+    const double before = i > 0 ? kept(i - 1) : 2 * kept(0) - kept(1);
+    const double after = i + 1 < last ? kept(i + 2) : 2 * kept(last) - kept(last - 1);
+    return spline(before, kept(i), kept(i + 1), after, at - i);
+  };
+  return {{of([](const Station& q) { return q.inner.x; }),
+           of([](const Station& q) { return q.inner.y; })},
+          {of([](const Station& q) { return q.outer.x; }),
+           of([](const Station& q) { return q.outer.y; })},
+          of([](const Station& q) { return q.rim; })};
+}
+
+PlanPoint MeniscusPlan::at(double s, double r) const {
+  const Station q = station(s);
+  return {(1 - r) * q.inner.x + r * q.outer.x, (1 - r) * q.inner.y + r * q.outer.y};
+}
+
+double MeniscusPlan::height(double s, double r) const {
+  return edge_height + r * (station(s).rim - edge_height);
+}
+
+double MeniscusPlan::height_at(const PlanPoint& p) const {
+  for (int i = 0; i < pieces; ++i) {
+    const double s = double(i) / pieces, t = double(i + 1) / pieces;
+    const PlanPoint a = at(s, 0), b = at(s, 1), c = at(t, 1), d = at(t, 0);
+    const double side = cross2(a, b, p), other = cross2(d, c, p);
+    // between the two sections, and between inner edge and rim
+    if (side * other > 0) continue;
+    const double inner = cross2(a, d, p), outer = cross2(b, c, p);
+    if (inner * outer > 0) continue;
+    const double r = std::abs(inner) / std::max(std::abs(inner) + std::abs(outer), 1e-12);
+    return height(0.5 * (s + t), r);
+  }
+  return 0;
+}
+
+double MeniscusPlan::length(double r) const {
+  double sum = 0;
+  for (int i = 0; i < pieces; ++i) {
+    const PlanPoint a = at(double(i) / pieces, r), b = at(double(i + 1) / pieces, r);
+    sum += std::hypot(b.x - a.x, b.y - a.y);
+  }
+  return sum;
+}
+
+}  // namespace fabrica::body
