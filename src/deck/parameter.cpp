@@ -3,6 +3,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "base/math_functions.h"
 #include "deck/number.h"
 
 namespace fabrica {
@@ -15,28 +16,6 @@ std::string lower(std::string_view text) {
 }
 
 bool is_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
-
-using OneArgument = double (*)(double);
-const std::map<std::string, OneArgument, std::less<>>& functions() {
-  static const std::map<std::string, OneArgument, std::less<>> list = {{"abs", [](double a) { return std::abs(a); }},
-                                                                       {"sqrt", [](double a) { return std::sqrt(a); }},
-                                                                       {"exp", [](double a) { return std::exp(a); }},
-                                                                       {"log", [](double a) { return std::log(a); }},
-                                                                       {"ln", [](double a) { return std::log(a); }},
-                                                                       {"log10", [](double a) { return std::log10(a); }},
-                                                                       {"sin", [](double a) { return std::sin(a); }},
-                                                                       {"cos", [](double a) { return std::cos(a); }},
-                                                                       {"tan", [](double a) { return std::tan(a); }},
-                                                                       {"asin", [](double a) { return std::asin(a); }},
-                                                                       {"acos", [](double a) { return std::acos(a); }},
-                                                                       {"atan", [](double a) { return std::atan(a); }},
-                                                                       {"sinh", [](double a) { return std::sinh(a); }},
-                                                                       {"cosh", [](double a) { return std::cosh(a); }},
-                                                                       {"tanh", [](double a) { return std::tanh(a); }},
-                                                                       {"aint", [](double a) { return std::trunc(a); }},
-                                                                       {"anint", [](double a) { return std::round(a); }}};
-  return list;
-}
 
 class Expression {
  public:
@@ -182,8 +161,8 @@ class Expression {
     std::vector<ParameterValue> arguments{sum()};
     while (take(',')) arguments.push_back(sum());
     if (!take(')')) return fail("a closing bracket is missing");
-    const auto known = functions().find(name);
-    if (known != functions().end() && arguments.size() == 1) {
+    const auto known = functions_of_one().find(name);
+    if (known != functions_of_one().end() && arguments.size() == 1) {
       if (name == "abs" && integers(arguments[0], arguments[0])) {
         const std::int64_t i = std::get<std::int64_t>(arguments[0]);
         return i < 0 && i != INT64_MIN ? -i : i;

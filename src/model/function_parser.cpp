@@ -11,31 +11,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/math_functions.h"
 #include "model/function.h"
 
 namespace fabrica {
 namespace {
-
-using One = double (*)(double);
-const std::map<std::string, One, std::less<>> functions_of_one{{"abs", [](double a) { return std::abs(a); }},
-                                                               {"fabs", [](double a) { return std::abs(a); }},
-                                                               {"sqrt", [](double a) { return std::sqrt(a); }},
-                                                               {"exp", [](double a) { return std::exp(a); }},
-                                                               {"log", [](double a) { return std::log(a); }},
-                                                               {"log10", [](double a) { return std::log10(a); }},
-                                                               {"sin", [](double a) { return std::sin(a); }},
-                                                               {"cos", [](double a) { return std::cos(a); }},
-                                                               {"tan", [](double a) { return std::tan(a); }},
-                                                               {"asin", [](double a) { return std::asin(a); }},
-                                                               {"acos", [](double a) { return std::acos(a); }},
-                                                               {"atan", [](double a) { return std::atan(a); }},
-                                                               {"sinh", [](double a) { return std::sinh(a); }},
-                                                               {"cosh", [](double a) { return std::cosh(a); }},
-                                                               {"tanh", [](double a) { return std::tanh(a); }},
-                                                               {"floor", [](double a) { return std::floor(a); }},
-                                                               {"ceil", [](double a) { return std::ceil(a); }},
-                                                               {"aint", [](double a) { return std::trunc(a); }},
-                                                               {"anint", [](double a) { return std::round(a); }}};
 
 using Two = double (*)(double, double);
 const std::map<std::string, Two, std::less<>> functions_of_two{
@@ -295,7 +275,7 @@ class FunctionParser {
         fail(n + " takes " + std::to_string(wanted) + " arguments, not " +
              std::to_string(a.size()));
     };
-    if (const auto f = functions_of_one.find(n); f != functions_of_one.end()) {
+    if (const auto f = functions_of_one().find(n); f != functions_of_one().end()) {
       count(1);
       return [x = a[0], apply = f->second](Frame& frame) { return apply(x(frame)); };
     }
