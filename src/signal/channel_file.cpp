@@ -99,10 +99,8 @@ int find_column(const Table& t, const std::string& name) {
 }
 
 [[noreturn]] void no_such_column(const Table& t, const std::string& name) {
-  std::string all;
-  for (const std::string& n : t.names) all += (all.empty() ? "" : ", ") + n;
   throw SignalError("no-such-channel", fmt::format("{} has no column '{}'", t.path, name),
-                    "There are: " + all);
+                    "There are: " + listed(t.names, name));
 }
 
 int column(const Table& t, const std::string& name) {

@@ -12,6 +12,19 @@ constexpr double step_tolerance = 1e-3;  // of a step: times are often printed w
 
 }  // namespace
 
+std::string listed(std::vector<std::string> names, const std::string& wanted) {
+  constexpr std::size_t most = 24;
+  const std::size_t colon = wanted.find(':');
+  const std::string id = colon == std::string::npos ? "" : wanted.substr(colon);
+  if (!id.empty())
+    std::stable_partition(names.begin(), names.end(),
+                          [&](const std::string& n) { return n.ends_with(id); });
+  std::string out;
+  for (std::size_t i = 0; i < std::min(most, names.size()); ++i) out += (i ? ", " : "") + names[i];
+  if (names.size() > most) out += fmt::format(" and {} more", names.size() - most);
+  return out;
+}
+
 void check(const Signal& s) {
   if (s.x.size() != s.y.size())
     throw SignalError(

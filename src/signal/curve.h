@@ -19,6 +19,9 @@ class SignalError : public std::runtime_error {
   std::string name_;
 };
 
+// Names for a message, at most 24 of them: those with the id of what was wanted ("force:7") first.
+std::string listed(std::vector<std::string> names, const std::string& wanted = {});
+
 // n samples y at x. Units are names of signal/units.h; "" means that none was given, "1" that there
 // is none.
 struct Signal {

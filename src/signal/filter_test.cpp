@@ -126,6 +126,16 @@ TEST_CASE("a step longer than the record is refused with the unit it was taken i
   CHECK_THROWS_WITH_AS(resampled(s, 0.1), doctest::Contains("0.1 s is longer than"), SignalError);
 }
 
+TEST_CASE("of many names a message shows those with the wanted id, and how many there are") {
+  CHECK(listed({"a", "b"}) == "a, b");
+  std::vector<std::string> names{"time"};
+  for (const char* what : {"force:", "moment:"})
+    for (int id = 1; id <= 40; ++id) names.push_back(what + std::to_string(id));
+  const std::string text = listed(names, "work:7");
+  CHECK(text.starts_with("force:7, moment:7, time, force:1, "));
+  CHECK(text.ends_with("force:22 and 57 more"));
+}
+
 TEST_CASE("resultant, crop and offset") {
   const Signal x = sampled(0.01, 11, [](double) { return 3; }),
                y = sampled(0.01, 11, [](double) { return 4; });

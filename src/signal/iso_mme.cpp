@@ -132,9 +132,9 @@ std::vector<Signal> read_mme_test(const std::string& path) {
 
 Signal read_mme_channel(const std::string& path, const std::string& code) {
   std::vector<Signal> all = read_mme_test(path), found;
-  std::string names;
+  std::vector<std::string> names;
   for (Signal& s : all) {
-    names += (names.empty() ? "" : ", ") + s.name;
+    names.push_back(s.name);
     if (s.name == code) return std::move(s);
   }
   for (Signal& s : all)
@@ -142,7 +142,7 @@ Signal read_mme_channel(const std::string& path, const std::string& code) {
   if (found.size() != 1)
     throw SignalError("no-such-channel",
                       fmt::format("{}: {} channels begin with '{}'", path, found.size(), code),
-                      "There are: " + names);
+                      "There are: " + listed(names));
   return std::move(found[0]);
 }
 

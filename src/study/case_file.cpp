@@ -41,6 +41,8 @@ SignalSpec read_signal(Fields f) {
     f.fail("rating", "rates curves over time, and x is given",
            "Rate the curve over time, or compare the loop by its corridor");
   s.interval = f.interval("interval");
+  s.weight = f.number("weight", 1);
+  if (!(s.weight >= 0)) f.fail("weight", "is negative", "Give a number from 0 upwards");
   s.paper = f.text("paper", "");
   f.finish();
   return s;

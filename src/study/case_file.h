@@ -26,6 +26,7 @@ struct SignalSpec {
   std::string reference_x;          // its abscissa: a column of the same file; empty: the first one
   std::string low, high;            // corridor: columns of files, or none
   std::vector<std::string> rating;  // "cora", "iso18571"
+  double weight = 1;                // in the rating of all signals of the case
   std::optional<std::pair<double, double>> interval;  // of time, for the rating
   std::string paper;  // "test/signal" of the published table, or none
   int line = 0;

@@ -158,6 +158,11 @@ std::string case_page(const Case& c, const Outcome& o, const PageExtras& e) {
                 ? "<h3>" + escaped(s.name) + "</h3>\n<p>" + escaped(s.remark) + "</p>\n"
                 : signal_section(s, charts.back(), c.time_unit);
   }
+  if (o.cora_of_all)
+    body += fmt::format(
+        "<p>CORA 3.6 of all signals, the mean of their totals by weight: <strong>{} "
+        "{}</strong>.</p>\n",
+        rating(*o.cora_of_all), rating_word("cora", *o.cora_of_all));
   body += check_section(o);
   if (!e.energies.empty()) {
     Chart energy{.id = "energies", .x = with_unit("time", c.time_unit), .y = "energy"};
@@ -193,6 +198,9 @@ std::string index_page(const std::vector<Outcome>& outcomes) {
         rated.push_back({link, escaped(s.name), method_name(method), rating(parts.back().second),
                          rating_word(method, parts.back().second),
                          s.paper_total && method == "cora" ? rating(*s.paper_total) : ""});
+    if (o.cora_of_all)
+      rated.push_back({link, all_signals, method_name("cora"), rating(*o.cora_of_all),
+                       rating_word("cora", *o.cora_of_all), ""});
   }
   std::string body =
       "<h1>Cases</h1>\n" + fmt::format("<p>{} passed, {} failed, {} skipped. Fabrica {}.</p>\n",
@@ -211,7 +219,7 @@ std::string rating_table(const std::vector<Outcome>& outcomes,
   std::vector<std::array<std::string, 6>> rows{
       {"case", "signal", "method", "rating", "", "published"}};
   std::vector<std::string> found;
-  for (const Outcome& o : outcomes)
+  for (const Outcome& o : outcomes) {
     for (const SignalResult& s : o.signals) {
       found.push_back(s.paper);
       for (const auto& [method, parts] : s.ratings)
@@ -224,6 +232,10 @@ std::string rating_table(const std::vector<Outcome>& outcomes,
              fmt::format("{} (peak {:.4g} {} at {:.4g})", s.remark, s.peak, s.unit, s.peak_at),
              s.paper_total ? rating(*s.paper_total) : "-"});
     }
+    if (o.cora_of_all)
+      rows.push_back({o.name, all_signals, "cora", rating(*o.cora_of_all),
+                      rating_word("cora", *o.cora_of_all), "-"});
+  }
   if (rows.size() == 1) return "no signal has been computed yet: run `fabrica validate`\n";
   for (const auto& [name, total] : published)
     if (std::find(found.begin(), found.end(), name) == found.end())

@@ -24,6 +24,9 @@ std::string case_page(const Case& c, const Outcome& outcome, const PageExtras& e
 // OUT/index.html
 std::string index_page(const std::vector<Outcome>& outcomes);
 
+// What stands for a signal in the line of CORA's rating of them all.
+inline constexpr const char* all_signals = "all signals";
+
 // All ratings as text, the published one beside ours where there is one, then the rows of
 // `published` ("test/signal", total) that no signal names.
 std::string rating_table(const std::vector<Outcome>& outcomes,

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "signal/curve.h"
 #include "study/error.h"
 
 namespace fabrica::study {
@@ -19,13 +20,6 @@ std::size_t colon_of(const std::string& text) {
     throw StudyError("'" + text + "' is not of the form database:column or file.csv:column. " +
                      "Name both");
   return at;
-}
-
-std::string names_of(const CsvTable& table) {
-  std::string list;
-  for (std::size_t i = 0; i < table.names.size() && i < 40; ++i)
-    list += (i ? ", " : "") + table.names[i];
-  return list + (table.names.size() > 40 ? ", ..." : "");
 }
 
 // a list of the databases of a result
@@ -104,7 +98,7 @@ std::size_t Channels::find_column(const CsvTable& table, const std::string& name
   }
   if (hits == 1) return found;
   throw StudyError("'" + where + "': there is no column " + name +
-                   "; there are: " + names_of(table) + ". Name one of them");
+                   "; there are: " + listed(table.names, name) + ". Name one of them");
 }
 
 std::vector<double> Channels::column(const std::string& text) {

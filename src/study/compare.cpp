@@ -130,7 +130,7 @@ void rate(const SignalSpec& s, const std::string& time_unit, SignalResult& r) {
     r.ratings[method] = rated.parts;
     if (shown.parts.empty() || method == "cora") shown = rated;
   }
-  r.rated_from = shown.from, r.rated_to = shown.to;
+  r.rated_from = shown.from, r.rated_to = shown.to, r.weight = s.weight;
   if (s.low.empty()) {
     r.low = shown.inner_low, r.high = shown.inner_high;
     r.outer_low = shown.outer_low, r.outer_high = shown.outer_high;

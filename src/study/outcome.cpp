@@ -76,6 +76,7 @@ ordered_json to_json(const Outcome& o) {
                  {"summary", o.summary}};
   j["signals"] = ordered_json::array();
   for (const SignalResult& s : o.signals) j["signals"].push_back(json_of(s));
+  if (o.cora_of_all) j["cora_of_all"] = *o.cora_of_all;
   j["checks"] = ordered_json::array();
   for (const CheckResult& c : o.checks) j["checks"].push_back(json_of(c));
   return j;
@@ -90,6 +91,7 @@ Outcome outcome_from(const ordered_json& j) {
   o.resolution = j.at("resolution"), o.finished = j.at("finished");
   o.run_seconds = j.at("run_seconds"), o.summary = j.at("summary");
   for (const auto& s : j.at("signals")) o.signals.push_back(signal_from(s));
+  if (j.contains("cora_of_all")) o.cora_of_all = j["cora_of_all"].get<double>();
   for (const auto& c : j.at("checks")) o.checks.push_back(check_from(c));
   return o;
 }

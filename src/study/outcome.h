@@ -26,6 +26,7 @@ struct SignalResult {
   // method -> parts in order, the total last: {"cora", {{"corridor", 0.9}, ..., {"total", 0.8}}}
   std::map<std::string, std::vector<std::pair<std::string, double>>> ratings;
   double rated_from = 0, rated_to = 0;  // interval of the ratings
+  double weight = 1;                    // in the rating of all signals
   std::string paper;
   std::optional<double> paper_total;  // the published rating of this signal
 };
@@ -41,6 +42,8 @@ struct Outcome {
   nlohmann::ordered_json summary;  // of the run
   std::vector<SignalResult> signals;
   std::vector<CheckResult> checks;
+  // CORA's weighted mean of the totals of all rated signals, where there are two or more
+  std::optional<double> cora_of_all;
 };
 
 std::string state_name(State state);

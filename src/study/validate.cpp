@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "signal/cora.h"
 #include "study/assets.h"
 #include "study/case_page.h"
 #include "study/compare.h"
@@ -133,6 +134,7 @@ double named_number(const std::string& text, const Outcome& o,
     for (const auto& [name, value] : fits) list += (list.empty() ? "" : ", ") + name;
     throw StudyError("'" + text + "': there is no such number; there are: " + list + ". Name one");
   }
+  if (text == "rating:all:cora" && o.cora_of_all) return *o.cora_of_all;
   for (const SignalResult& s : o.signals)
     for (const auto& [method, parts] : s.ratings)
       for (const auto& [part, value] : parts)
@@ -143,6 +145,16 @@ double named_number(const std::string& text, const Outcome& o,
       "'" + text +
       "': there is no such rating. Write rating:<signal>:<method>[:part] of a signal " +
       "that is rated");
+}
+
+std::optional<double> cora_of_all(const std::vector<SignalResult>& signals) {
+  std::vector<double> totals, weights;
+  for (const SignalResult& s : signals)
+    if (const auto at = s.ratings.find("cora"); at != s.ratings.end())
+      totals.push_back(at->second.back().second), weights.push_back(s.weight);
+  const bool any = std::any_of(weights.begin(), weights.end(), [](double v) { return v > 0; });
+  if (totals.size() < 2 || !any) return {};
+  return cora_combined(totals, weights);
 }
 
 void compare(Work& w) {
@@ -159,6 +171,7 @@ void compare(Work& w) {
       o.finished = time_of_day();
     }
     for (const SignalSpec& s : w.c.signals) o.signals.push_back(compare_signal(s, channels, w.c));
+    o.cora_of_all = cora_of_all(o.signals);
     std::map<std::string, double> fits;
     for (const FitSpec& f : w.c.fits)
       for (const auto& [name, value] : fit_outcomes(f, w.c)) fits[f.name + ":" + name] = value;
@@ -183,6 +196,9 @@ void print(const Outcome& o) {
                  rating_word(method, parts.back().second));
     if (!s.remark.empty()) fmt::print("  {:<5} {}: {}\n", "", s.name, s.remark);
   }
+  if (o.cora_of_all)
+    fmt::print("  {:<5} {}: cora {:.3f} ({})\n", "", all_signals, *o.cora_of_all,
+               rating_word("cora", *o.cora_of_all));
   for (const CheckResult& c : o.checks)
     fmt::print("  {:<5} {}: {}\n", c.passed ? "ok" : "FAIL", c.name,
                c.computed ? fmt::format("{:.5g}, demanded {}", c.value, c.bound) : c.problem);

@@ -128,6 +128,31 @@ class Validate(unittest.TestCase):
         self.assertTrue(all("no case yet" in line for line in lines[1:]))
         self.assertEqual(len({len(line) for line in lines}), 1, "columns are aligned")
 
+    def test_the_rating_of_all_signals_is_their_mean_by_weight(self):
+        case = self.folder / "cases" / "sled"
+        case.mkdir(parents=True)
+        (case / "curves.csv").write_text("# provenance: synthetic\ntime [ms],a [g],b [g]\n" +
+                                         "".join(f"{t},{50 - abs(t - 50)},{40 - 0.7 * abs(t - 48)}\n" for t in range(101)))
+        signal = ('[[signal]]\nname = "{0}"\nunit = "g"\nmodel = "curves.csv:{0}"\nreference = "curves.csv:a [g]"\n'
+                  'rating = ["cora", "iso18571"]\nweight = {1}\n')
+        (case / "case.toml").write_text('title = "sled"\nrequirement = "none"\nsource = "made here"\n' +
+                                        signal.format("a", 1) + signal.format("b", 3) +
+                                        '[[limit]]\nname = "all"\nmodel = "rating:all:cora"\nleast = 0.5\n')
+        self.assertIn("ok    all: ", self.validate())
+        outcome = json.loads((self.folder / "out" / "sled" / "outcome.json").read_text())
+        a, b = (s["ratings"]["cora"]["total"] for s in outcome["signals"])
+        self.assertEqual(a, 1)
+        self.assertLess(b, 0.99)
+        self.assertAlmostEqual(outcome["cora_of_all"], (a + 3 * b) / 4, places=12)
+        table = self.validate("--table")
+        self.assertRegex(table, rf"sled +all signals +cora +{outcome['cora_of_all']:.3f} ")
+        self.assertEqual(table.count("all signals"), 1)
+        self.assertIn(f"{outcome['cora_of_all']:.3f}", (self.folder / "out" / "index.html").read_text())
+        # a signal alone is its own total; weights below zero are refused
+        (case / "case.toml").write_text('title = "sled"\nrequirement = "none"\nsource = "made here"\n' +
+                                        signal.format("a", -1))
+        self.assertIn("weight", self.validate(status=1))
+
 
 if __name__ == "__main__":
     unittest.main()
