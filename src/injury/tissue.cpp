@@ -1,6 +1,7 @@
 #include "injury/tissue.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -57,6 +58,17 @@ double rib_fracture_probability(double strain, double age) {
   const double median = -2.9866 - 0.0130 * age;
   return strain <= 0 ? 0
                      : 0.5 * std::erfc(-(std::log(strain) - median) / (std::sqrt(2.0) * deviation));
+}
+
+double rib_fracture_probability_forman(double strain, double age) {
+  // strains at fracture of the twelve, taken to 25 years [%]
+  constexpr std::array broken{1.654, 2.012, 2.119, 2.227, 2.382, 2.983,
+                              3.212, 3.293, 3.434, 3.590, 4.089, 4.102};
+  const double kept = 1 - 0.0051 * (age - 25);  // of the strain that bone bears at 25 years
+  if (strain <= 0 || kept <= 0) return strain > 0;
+  const double adjusted = 100 * strain / kept;
+  const auto below = std::lower_bound(broken.begin(), broken.end(), adjusted) - broken.begin();
+  return double(below) / double(broken.size());
 }
 
 double at_least(const std::vector<double>& p, int k) {

@@ -4,8 +4,9 @@
 //   CSDM(x)  the volume fraction above x
 //   ribs     p = Phi((ln e + 2.9866 + 0.0130 age) / 0.3026), e the strain of a rib's cortical bone,
 //            age in years, Phi the normal distribution (Larsson et al. 2021, doi
-//            10.3389/fbioe.2021.677768); P(N >= k) of independent ribs by the Poisson-binomial
-//            recursion (Forman et al. 2012)
+//            10.3389/fbioe.2021.677768); or p = share of twelve subjects whose coupons broke below
+//            e / (1 - 0.0051 (age - 25)) (Forman et al. 2012, Ann Adv Automot Med 56:109-124);
+//            P(N >= k) of independent ribs by the Poisson-binomial recursion
 #include <vector>
 
 namespace fabrica {
@@ -20,6 +21,7 @@ double volume_fraction_above(const std::vector<double>& values, const std::vecto
                              double threshold);
 
 double rib_fracture_probability(double strain, double age_years);
+double rib_fracture_probability_forman(double strain, double age_years);
 
 // P(N >= k) where event i has the probability p[i].
 double at_least(const std::vector<double>& p, int k);

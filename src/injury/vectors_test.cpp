@@ -175,6 +175,18 @@ TEST_CASE("ribs: the risk of one rib is log-normal in strain, with a median that
   CHECK(rib_fracture_probability(0, 30) == 0);
 }
 
+// Twelve subjects, whose strains at 25 years are 1.654 to 4.102 %: at 65 years bone bears
+// 1 - 0.0051 x 40 = 0.796 of them
+TEST_CASE("rib fractures after Forman: steps of one in twelve, moved by age") {
+  CHECK(rib_fracture_probability_forman(0.0165, 25) == 0);
+  CHECK(rib_fracture_probability_forman(0.0166, 25) == doctest::Approx(1.0 / 12));
+  CHECK(rib_fracture_probability_forman(0.0240, 25) == doctest::Approx(5.0 / 12));
+  CHECK(rib_fracture_probability_forman(0.0411, 25) == 1);
+  CHECK(rib_fracture_probability_forman(0.796 * 0.0240, 65) == doctest::Approx(5.0 / 12));
+  CHECK(rib_fracture_probability_forman(0.0240, 65) == doctest::Approx(6.0 / 12));  // 3.015 %
+  CHECK(rib_fracture_probability_forman(0, 65) == 0);
+}
+
 TEST_CASE("tissue: quantiles and fractions weigh elements by their volume") {
   const std::vector<double> strain{0.1, 0.3, 0.2}, volume{90, 4, 6};
   CHECK(volume_quantile(strain, volume, 1) == 0.3);

@@ -85,7 +85,7 @@ class Injury(unittest.TestCase):
         self.assertIn("brain.strain: head.brain.gray, head.brain.white, 4 solids", done.stderr)
         # what is not confirmed is said in both outputs
         self.assertEqual((m["MPS"]["confirmed"], m["MPS95"]["confirmed"]), (True, False))
-        self.assertIn("whether its 95 %", m["MPS95"]["not_confirmed"])
+        self.assertIn("95 % of the volume here", m["MPS95"]["not_confirmed"])
         self.assertIn("not confirmed: " + m["MPS95"]["not_confirmed"], done.stdout)
         risk = m["fractured ribs, risk"]["risks"][0]
         self.assertFalse(risk["confirmed"])
