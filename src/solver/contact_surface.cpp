@@ -81,6 +81,7 @@ bool uses_thickness(const Model& model, const Contact& contact) {
 SurfaceSource::SurfaceSource(const Model& model, const ContactInput& input)
     : model_(model), input_(input) {
   collect_faces();
+  collect_shells();
   find_bodies();
 }
 
@@ -114,6 +115,12 @@ void SurfaceSource::collect_faces() {
                    [](const Face& a, const Face& b) { return a.key < b.key; });
   for (std::size_t i = 1; i < faces_.size(); ++i)
     if (faces_[i].key == faces_[i - 1].key) faces_[i].exterior = faces_[i - 1].exterior = false;
+}
+
+void SurfaceSource::collect_shells() {
+  for (int e = 0; e < model_.shells.size(); ++e)
+    shells_.emplace_back(key_of(distinct(model_.shells.node[e])), e);
+  std::sort(shells_.begin(), shells_.end());
 }
 
 // nodes that move together: rigid parts (merged ones as one), extra nodes, nodal rigid bodies
@@ -244,9 +251,6 @@ void SurfaceSource::orient(ContactSegment& g, const Contact& contact) const {
 // shell's segment is the one of the segment's own corners, which may run against the shell's.
 void SurfaceSource::add_set(const SegmentSet& set, const Contact& contact, bool reference,
                             ContactSurface& s) const {
-  std::map<std::array<int, 4>, int> shells;
-  for (int e = 0; e < model_.shells.size(); ++e)
-    shells.emplace(key_of(distinct(model_.shells.node[e])), e);
   const double scale = model_.controls.contact_scale * (reference ? contact.sfm : contact.sfs);
   for (const auto& segment : set.segments) {
     const Corners corners = distinct(segment);
@@ -254,8 +258,8 @@ void SurfaceSource::add_set(const SegmentSet& set, const Contact& contact, bool 
     const auto key = key_of(corners);
     const auto face = std::lower_bound(faces_.begin(), faces_.end(), key,
                                        [](const Face& f, const auto& k) { return f.key < k; });
-    const auto shell = shells.find(key);
-    if (shell != shells.end()) {
+    const auto shell = std::lower_bound(shells_.begin(), shells_.end(), std::pair(key, -1));
+    if (shell != shells_.end() && shell->first == key) {
       add_shell(shell->second, contact, reference, s);
       ContactSegment& g = s.segments.back();
       std::copy_n(corners.node, corners.count, g.node);

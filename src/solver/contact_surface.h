@@ -78,6 +78,7 @@ class SurfaceSource {
     bool exterior;
   };
   void collect_faces();
+  void collect_shells();
   void find_bodies();
   const Face* across(const std::array<int, 4>& key, int solid) const;
   double thickness_behind(const Face& face, double enough) const;
@@ -100,7 +101,8 @@ class SurfaceSource {
 
   const Model& model_;
   const ContactInput& input_;
-  std::vector<Face> faces_;  // ascending key
+  std::vector<Face> faces_;                                 // ascending key
+  std::vector<std::pair<std::array<int, 4>, int>> shells_;  // key and element, ascending
   std::vector<int> node_body_;
 };
 
