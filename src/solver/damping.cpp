@@ -80,11 +80,12 @@ void MassDamping::apply(State& state, RigidBodies& bodies, Team& team) {
                     Vec3d& last) {
       Vec3d force;
       double power = 0;
+      const double inverse = 1 / mass;
       for (int k = 0; k < 3; ++k) {
         const double before = mass * v[k] - dt * f[k];
         force[k] = semi_implicit(d[k] + extra, dt, before, f[k]);
-        power += (last[k] + force[k]) * before / mass;
-        v[k] += dt * force[k] / mass;
+        power += (last[k] + force[k]) * before * inverse;
+        v[k] += dt * force[k] * inverse;
       }
       last = force;
       return power;
