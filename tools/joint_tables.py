@@ -17,6 +17,12 @@ import sys
 LUMBAR = {"ALL": (7.8, 0.12, 20.0), "PLL": (10.0, 0.11, 20.0), "LF": (15.0, 0.062, 19.5), "CL": (7.5, 0.25, 32.9),
           "ITL": (10.0, 0.18, 58.7), "ISL": (10.0, 0.14, 11.6), "SSL": (8.0, 0.20, 15.0)}
 LUMBAR_SOURCE = "moduli PMC5592017 Table 2; area PMC2913991 Table 3; k = E A / L"
+# k [N/mm] behind the toe, its length [mm] and its force [N], of the whole ligament: averages of tests at 0.5 1/s,
+# bone to bone, of the levels C2-C3 to C7-T1 together (Mattucci and Cronin 2015); flavum: both halves
+CERVICAL = {"ALL": (140.4, 1.79, 116.0), "PLL": (217.6, 0.79, 69.0), "LF": (117.7, 3.82, 119.7),
+            "CL": (82.2, 1.33, 50.2), "ISL": (19.4, 3.02, 28.6)}
+CERVICAL_SOURCE = ("Mattucci and Cronin 2015 J Mech Behav Biomed Mater 41:251, averages at 0.5 1/s as in "
+                   "github.com/IMMC-UWaterloo/ARCGen TestCase_MattucciLigaments.m")
 # strands and breadth [mm] over which they spread
 BROAD = {"ALL": (3, 14), "PLL": (3, 10), "LF": (2, 8), "ISL": (2, 6), "SSL": (1, 0), "CL": (4, 10), "ITL": (1, 0),
          "SI": (3, 16), "sacrospinous": (3, 14), "sacrotuberous": (3, 16), "iliolumbar": (3, 12), "pubic": (3, 14),
@@ -33,17 +39,17 @@ HEIGHTS = {"L1": 10.0, "L2": 11.6, "L3": 12.5, "L4": 13.8, "L5": 13.0}
 # rows that the full table lacks: without them the hyoid bone would hang on nothing
 ADDED = [
     ["stylohyoid", "head", "R", "skull", "head", 8.0, -38.0, -10.0, "hyoid", "head", 28.0, -12.0, -42.0, "points", 55, 5,
-     20, "", "", 1, 0, "", "E 1200 MPa (VIVA+ v0.2.5, Zajac 1989) would be 109 N/mm; taken softer for the muscle in series; "
+     20, "", "", "", "", 1, 0, "", "E 1200 MPa (VIVA+ v0.2.5, Zajac 1989) would be 109 N/mm; taken softer for the muscle in series; "
      "estimated", "estimated"],
     ["geniohyoid", "head", "M", "mandible", "head", 90.0, 0.0, -45.0, "hyoid", "head", 55.0, 0.0, -48.0, "points", 35, 20,
-     5, "", "", 2, 10, "", "passive muscle; estimated", "estimated"],
+     5, "", "", "", "", 2, 10, "", "passive muscle; estimated", "estimated"],
     ["thyrohyoid", "neck", "R", "hyoid", "head", 40.0, -16.0, -50.0, "manubrium", "thorax", 85.0, -12.0, 130.0, "points",
-     100, 20, 2, "", "", 1, 0, "", "passive infrahyoid muscles; estimated", "estimated"],
+     100, 20, 2, "", "", "", "", 1, 0, "", "passive infrahyoid muscles; estimated", "estimated"],
 ]
 # membrane between tibia and fibula, a strand for each 30 mm: E 1170 MPa, 0.54 mm thick, 18 mm wide
 # (VIVA+ v0.2.5, Minns-Hunter 1976); k = E t 30 / 18
 ADDED += [[f"interosseous_membrane_leg_{z}", "leg", "R", "tibia", "tibia_R", 0.0, -10.0, z + 10.0, "fibula", "tibia_R",
-           round(5 - 0.03 * z, 1), round(-24 - 0.046 * z, 1), float(z), "points", 18, 16, 1050, "", "", 1, 0, "",
+           round(5 - 0.03 * z, 1), round(-24 - 0.046 * z, 1), float(z), "points", 18, 16, 1050, "", "", "", "", 1, 0, "",
            "1170 MPa, 0.54 mm (VIVA+ v0.2.5, Minns-Hunter 1976), a strand for each 30 mm; places estimated", "read"]
           for z in range(60, 331, 30)]
 SHORTEST = 4.0  # [mm] reference length of ligaments that the source drew shorter: fibres run along the joint, not across
@@ -62,14 +68,19 @@ def breadth(name):
 
 
 def law(row, length):
-    """k1 [N/mm], strain1, k2, source; one slope: the toe of Blankevoort 1991 is added by the program"""
+    """k1 [N/mm], strain1, k2, toe [mm], its force [N], source; one slope: the toe of Blankevoort 1991 is added by the
+    program"""
     kind, area = row["name"].split("_")[0], float(row["area_mm2"] or 0)
     source = row["source"]
     if row["stiffness_unit"] == "N/mm (phases)":
         e1, strain, e2 = LUMBAR[kind]
-        return e1 * area / length, strain, e2 * area / length, LUMBAR_SOURCE
+        return e1 * area / length, strain, e2 * area / length, "", "", LUMBAR_SOURCE
+    if kind in CERVICAL and row["bone1"] in ("C2", "C3", "C4", "C5", "C6", "C7"):
+        half = 0.5 if kind == "LF" else 1.0  # a row is one side
+        k, toe, force = CERVICAL[kind]
+        return half * k, "", "", toe, half * force, CERVICAL_SOURCE
     k = float(row["stiffness"] or 0)
-    return (k / length if row["stiffness_unit"].startswith("N/strain") else k), "", "", source
+    return (k / length if row["stiffness_unit"].startswith("N/strain") else k), "", "", "", "", source
 
 
 def ligaments(folder):
@@ -77,7 +88,7 @@ def ligaments(folder):
         length = max(float(row["length_stand_mm"]), SHORTEST)
         if row["name"].startswith("CL_"):
             length = 8.0 if row["bone1"].startswith("L") else 6.0
-        k1, e1, k2, source = law(row, length)
+        k1, e1, k2, toe, force, source = law(row, length)
         strands, spread = breadth(row["name"])
         slack = row["note"].split("slack ")[1].split(" mm")[0] if "slack" in row["note"] else ""
         ends = [row[c] for c in ("x1_mm", "y1_mm", "z1_mm", "x2_mm", "y2_mm", "z2_mm")]
@@ -87,10 +98,11 @@ def ligaments(folder):
             attach, k1, source = "muscle", 10.0, "tendon in series with a passive muscle; estimated"
         if row["name"] == "inguinal":
             source += "; both ends on the hip bone"
-        confidence = "read" if source == LUMBAR_SOURCE else row["confidence"]
+        confidence = "read" if source in (LUMBAR_SOURCE, CERVICAL_SOURCE) else row["confidence"]
         yield [row["name"], row["region"], row["side"], row["bone1"], row["frame1"], *ends[:3], row["bone2"],
                row["frame2"], *ends[3:], attach, f"{length:g}", row["area_mm2"],
-               f"{k1:.4g}", e1 and f"{e1:g}", k2 and f"{k2:.4g}", strands, spread, slack, source, confidence]
+               f"{k1:.4g}", e1 and f"{e1:g}", k2 and f"{k2:.4g}",
+               toe and f"{toe:g}", force and f"{force:.4g}", strands, spread, slack, source, confidence]
 
 
 def discs(folder):
@@ -122,10 +134,11 @@ def main():
               " changes: scaled per region, reduced to points. See LICENSE in data/anatomy.\n")
     write(target / "ligaments.csv", notice +
           "# Ends in the frames of the bones [mm], right side or midline. length: reference, of strains. k1 to strain1, k2"
-          " beyond [N/mm of the whole ligament];\n# without strain1: one slope k1 behind a toe. strands over a breadth"
+          " beyond [N/mm of the whole ligament];\n# without strain1: one slope k1 behind a toe, measured (its length"
+          " toe [mm], its force toe_force [N]) or of 6 % strain. strands over a breadth"
           " of spread. slack: length without force, where the source states one.\n",
           ["name", "region", "side", "bone1", "frame1", "x1", "y1", "z1", "bone2", "frame2", "x2", "y2", "z2", "attach",
-           "length", "area", "k1", "strain1", "k2", "strands", "spread", "slack", "source", "confidence"],
+           "length", "area", "k1", "strain1", "k2", "toe", "toe_force", "strands", "spread", "slack", "source", "confidence"],
           [*ligaments(folder), *ADDED])
     write(target / "discs.csv", notice +
           "# Centre and normal in the standing assembly [mm], global; width along y, depth along x; height: measured mean,"

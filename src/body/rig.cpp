@@ -76,16 +76,20 @@ RigSupport read_support(RigTable& table) {
   if (table.find("free"))
     for (const std::string& text : table.texts("free", "degrees of freedom"))
       support.free[std::size_t(dof_named(table, "free", text))] = true;
-  if (auto motion = table.table("motion"))
-    support.motion = read_curve(
-        *motion, {{"velocity", RigCurve::velocity}, {"displacement", RigCurve::displacement}});
-  if (support.motion && support.free[std::size_t(support.motion->dof)])
-    table.fail("free", fmt::format("holds {}, which the motion moves; take it out",
-                                   dof_names[std::size_t(support.motion->dof)]));
+  for (RigTable& motion : table.one_or_more("motion")) {
+    const RigCurve curve = read_curve(
+        motion, {{"velocity", RigCurve::velocity}, {"displacement", RigCurve::displacement}});
+    const char* dof = dof_names[std::size_t(curve.dof)];
+    if (support.free[std::size_t(curve.dof)])
+      table.fail("free", fmt::format("holds {}, which the motion moves; take it out", dof));
+    if (support.moves(curve.dof))
+      table.fail("motion", fmt::format("moves {} twice; give one curve", dof));
+    support.motions.push_back(curve);
+  }
   for (RigTable& load : table.tables("load")) {
     support.loads.push_back(read_curve(load, {{"force", RigCurve::force}}));
     const int dof = support.loads.back().dof;
-    if (support.motion && support.motion->dof == dof)
+    if (support.moves(dof))
       table.fail("load", fmt::format("pushes along {}, which the motion moves; take one out",
                                      dof_names[std::size_t(dof)]));
   }
@@ -211,10 +215,15 @@ bool same(const BoneName& name, const PlacedBone& bone) {
 
 }  // namespace
 
+bool RigSupport::moves(int dof) const {
+  return std::any_of(motions.begin(), motions.end(),
+                     [&](const RigCurve& curve) { return curve.dof == dof; });
+}
+
 bool RigSupport::holds(std::size_t dof) const {
-  const auto moves = [&](const RigCurve& curve) { return std::size_t(curve.dof) == dof; };
-  return !free[dof] && !(motion && moves(*motion)) &&
-         std::none_of(loads.begin(), loads.end(), moves);
+  return !free[dof] && !moves(int(dof)) &&
+         std::none_of(loads.begin(), loads.end(),
+                      [&](const RigCurve& curve) { return std::size_t(curve.dof) == dof; });
 }
 
 std::vector<BoneName> RigSpecimen::bones() const {

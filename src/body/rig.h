@@ -22,11 +22,12 @@ struct RigCurve {
 // How a rigid part of the rig moves: its degrees of freedom are held unless they are free, moved
 // or loaded.
 struct RigSupport {
-  std::array<bool, 6> free{};  // x y z rx ry rz
-  std::optional<RigCurve> motion;
-  std::vector<RigCurve> loads;  // at the pivot
-  Point velocity{0, 0, 0};      // [mm/ms] at the start
+  std::array<bool, 6> free{};     // x y z rx ry rz
+  std::vector<RigCurve> motions;  // one a degree of freedom
+  std::vector<RigCurve> loads;    // at the pivot
+  Point velocity{0, 0, 0};        // [mm/ms] at the start
 
+  bool moves(int dof) const;  // by a motion
   bool holds(std::size_t dof) const;
 };
 

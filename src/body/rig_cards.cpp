@@ -48,7 +48,7 @@ std::int64_t RigCards::curve(const std::string& title,
 
 RigCards::Curves RigCards::curves(const std::string& title, const RigSupport& support) {
   Curves out;
-  if (support.motion) out.push_back(curve(title, support.motion->points));
+  for (const RigCurve& motion : support.motions) out.push_back(curve(title, motion.points));
   for (const RigCurve& load : support.loads) out.push_back(curve(title + " load", load.points));
   return out;
 }
@@ -75,13 +75,13 @@ std::int64_t RigCards::rigid_part(const std::string& title, double density,
       part.set(field, mass->inertia[k++]);
   }
   std::size_t next = 0;
-  if (support.motion) {
-    Card& motion = builder_.add_card("BOUNDARY_PRESCRIBED_MOTION_RIGID");
-    motion.options = {"ID"};
-    motion.set("id", id).set("heading", title).set("pid", id);
-    motion.set("dof", keyword_dof(*support.motion));
-    motion.set("vad", support.motion->kind == RigCurve::velocity ? 0 : 2);
-    motion.set("lcid", double(curves[next++])).set("sf", 1);
+  for (const RigCurve& motion : support.motions) {
+    Card& card = builder_.add_card("BOUNDARY_PRESCRIBED_MOTION_RIGID");
+    card.options = {"ID"};
+    card.set("id", id + 1000.0 * double(next)).set("heading", title).set("pid", id);
+    card.set("dof", keyword_dof(motion));
+    card.set("vad", motion.kind == RigCurve::velocity ? 0 : 2);
+    card.set("lcid", double(curves[next++])).set("sf", 1);
   }
   for (const RigCurve& load : support.loads) {
     builder_.add_card("LOAD_RIGID_BODY")

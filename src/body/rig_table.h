@@ -95,6 +95,14 @@ class RigTable {
     if (!node->is_table()) fail(key, "must be a table such as { along = \"x\", ... }");
     return RigTable(path_, *node->as_table(), prefix_ + key + ".");
   }
+  // a table or a list of them
+  std::vector<RigTable> one_or_more(const std::string& key) {
+    const toml::node* node = find(key);
+    if (node && node->is_array()) return tables(key);
+    std::vector<RigTable> out;
+    if (auto one = table(key)) out.push_back(*one);
+    return out;
+  }
   void finish() const {
     for (const auto& [key, node] : table_) {
       if (std::find(asked_.begin(), asked_.end(), std::string(key.str())) != asked_.end()) continue;

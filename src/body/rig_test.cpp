@@ -99,9 +99,9 @@ TEST_CASE("a rig is read, and what is wrong in it is said with its line") {
   CHECK(rig.bones() == std::vector<std::string>{"right.rib5"});
   CHECK(norm(rig.pots[0].toward) == doctest::Approx(1));
   CHECK(rig.pots[0].support.free[5]);
-  REQUIRE(rig.pots[1].support.motion);
-  CHECK(rig.pots[1].support.motion->kind == RigCurve::velocity);
-  CHECK(rig.pots[1].support.motion->points[1].second == -1);
+  REQUIRE(rig.pots[1].support.motions.size() == 1);
+  CHECK(rig.pots[1].support.motions[0].kind == RigCurve::velocity);
+  CHECK(rig.pots[1].support.motions[0].points[1].second == -1);
   CHECK(rig.pots[0].support.holds(0));
   CHECK_FALSE(rig.pots[0].support.holds(5));
   CHECK_FALSE(rig.pots[1].support.holds(0));
@@ -122,6 +122,11 @@ TEST_CASE("a rig is read, and what is wrong in it is said with its line") {
   CHECK(refusal("bones = [\"right.rib5\"]", "bones = []").starts_with("4: pot[1].bones is empty"));
   CHECK(refusal("free = [\"rz\"]", "start_velocity = [0, 0, 1]")
             .starts_with("7: pot[1].start_velocity goes along z, which is held"));
+  CHECK(refusal(
+            "motion = { along = \"x\", velocity = [[0, 0], [10, -1]] }",
+            "motion = [{ along = \"x\", velocity = [[0, 0], [1, 1]] }, { along = \"x\", velocity = "
+            "[[0, 0], [1, 1]] }]")
+            .starts_with("13: pot[2].motion moves x twice"));
   CHECK(refusal("motion =", "load = [{ along = \"x\", force = [[0, 0], [1, 1]] }]\nmotion =")
             .starts_with("13: pot[2].load pushes along x, which the motion moves"));
   CHECK(refusal("at = [7, 8, 9]", "with = [\"right.rib5\", \"rib66\"]")

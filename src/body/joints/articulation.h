@@ -8,7 +8,7 @@
 
 namespace fabrica::body {
 
-enum class ArticulationKind { sliding, facet, joined, symphysis };
+enum class ArticulationKind { sliding, facet, arch, joined, symphysis };
 
 struct Articulation {
   std::string name;  // of the row

@@ -70,12 +70,14 @@ const BoneSurface& ArticulationMaker::surface(int index) {
   return *kept;
 }
 
-// Facets: behind the body and beside the midline. Other joints take every face.
+// Facets: behind the body and beside the midline; arches: behind the body. Other joints take every
+// face.
 bool ArticulationMaker::belongs(const Articulation& joint, int index, const Point& centre) const {
-  if (joint.kind != ArticulationKind::facet) return true;
+  if (joint.kind != ArticulationKind::facet && joint.kind != ArticulationKind::arch) return true;
   const Point local = bone(index).placement.inverse(centre);
   // the sacrum's frame is the pelvis: its facets lie behind the promontory
   const double behind = bone(index).mesh.name == "sacrum" ? -33 : -6;
+  if (joint.kind == ArticulationKind::arch) return local.x < behind * bone(index).mesh.scale.x;
   const double beside = joint.side == Side::left ? local.y : -local.y;
   return local.x < behind * bone(index).mesh.scale.x && beside > 4;
 }

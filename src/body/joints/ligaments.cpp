@@ -70,6 +70,13 @@ LigamentStiffness stiffness_of(const Table& table, int row) {
     law.strain1 = table.number(row, "strain1");
     law.k2 = 1e-3 * table.number(row, "k2");
   }
+  if (!table.text(row, "toe").empty()) {
+    law.toe = table.number(row, "toe");
+    law.toe_force = 1e-3 * table.number(row, "toe_force");
+    if (law.toe <= 0 || law.toe_force <= 0 || law.k1 * law.toe < law.toe_force)
+      table.fail(
+          row, "a toe has a length, a force, and at its end a slope k1 of at least force / length");
+  }
   return law;
 }
 
@@ -134,6 +141,7 @@ void LigamentMaker::add(const Table& table, int row, Side side) {
   report.length = norm(along);
   law.slack = std::max(report.reference - std::max(report.length, 4.0), 0.0);
   law.length = report.reference;
+  law.toe *= size, law.toe_force *= size;
   report.strands = int(builder.piece.lines.size());
   report.slack = law.slack, report.stiffness = law.k1;
 

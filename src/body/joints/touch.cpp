@@ -53,7 +53,8 @@ void Surfaces::renew(int bone) {
 
 std::vector<NearPair> Surfaces::near(const std::vector<Articulation>& joints) const {
   std::map<std::pair<int, int>, const Articulation*> joint_of;
-  for (const Articulation& joint : joints) joint_of[std::minmax(joint.a, joint.b)] = &joint;
+  for (const Articulation& joint : joints)
+    if (joint.kind != ArticulationKind::arch) joint_of[std::minmax(joint.a, joint.b)] = &joint;
   std::vector<NearPair> pairs;
   const int count = int(bones_.size());
   for (int a = 0; a < count; ++a)
