@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -242,6 +243,20 @@ bool refused(const Diagnostics& diagnostics, bool allowed) {
   return unsupported > 0 && !allowed;
 }
 
+// Functions of time became curves that end with the deck's run: a longer one would hold their last
+// value.
+bool outlasts_functions(const Model& m, double until) {
+  const bool any = std::any_of(m.cards.begin(), m.cards.end(), [](const auto& card) {
+    return card->schema && card->schema->name == "DEFINE_CURVE_FUNCTION";
+  });
+  if (!any || until <= m.controls.end_time) return false;
+  fmt::print(stderr,
+             "fabrica: [functions-end-early] the run is to last to {:g}, but the deck's "
+             "*DEFINE_CURVE_FUNCTIONs are known to ENDTIM, {:g}. Raise ENDTIM in the deck\n",
+             until, m.controls.end_time);
+  return true;
+}
+
 }  // namespace
 
 int run_command(const RunCommand& c) {
@@ -251,6 +266,7 @@ int run_command(const RunCommand& c) {
   print(diagnostics, Severity::warning);
   if (!model || diagnostics.has_errors()) return 1;
   if (refused(diagnostics, c.allow_unsupported)) return 2;
+  if (outlasts_functions(*model, c.until)) return 1;
   std::filesystem::create_directories(c.out);
   const std::size_t printed = diagnostics.list().size();
   RunOptions options;
