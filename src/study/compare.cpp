@@ -51,12 +51,19 @@ Curve model_curve(const SignalSpec& s, Channels& channels) {
   return c;
 }
 
-// a column of a reference file over its abscissa
-Curve file_curve(const std::string& column, const std::string& abscissa, Channels& channels) {
-  std::vector<double> x = abscissa.empty()
+// A column of a reference file over its abscissa; of one over time what lies in the signal's
+// window.
+Curve file_curve(const std::string& column, const SignalSpec& s, Channels& channels) {
+  std::vector<double> x = s.reference_x.empty()
                               ? channels.abscissa(column)
-                              : channels.column(table_name_of(column) + ":" + abscissa);
-  return finite(std::move(x), channels.column(column));
+                              : channels.column(table_name_of(column) + ":" + s.reference_x);
+  const Curve all = finite(std::move(x), channels.column(column));
+  if (!s.x.empty() || !s.window) return all;
+  Curve part;
+  for (std::size_t i = 0; i < all.x.size(); ++i)
+    if (all.x[i] >= s.window->first && all.x[i] <= s.window->second)
+      part.x.push_back(all.x[i]), part.y.push_back(all.y[i]);
+  return part;
 }
 
 void need_unit(const SignalSpec& s, Channels& channels, const Case& c) {
@@ -85,10 +92,12 @@ void need_abscissa_unit(const SignalSpec& s, Channels& channels, const Case& c) 
 }
 
 void read_reference(const SignalSpec& s, Channels& channels, const Case& c, SignalResult& r) {
-  r.reference = file_curve(s.reference, s.reference_x, channels);
+  r.reference = file_curve(s.reference, s, channels);
   if (r.reference.x.size() < 2)
-    throw StudyError(c.file, s.line, "signal.reference",
-                     "'" + s.reference + "' has fewer than two points", "Take another column");
+    throw StudyError(
+        c.file, s.line, "signal.reference",
+        "'" + s.reference + "' has fewer than two points" + (s.window ? " in the window" : ""),
+        "Take another column");
   const auto& head = channels.head(s.reference);
   const auto text = [&](const char* key) {
     const auto at = head.find(key);
@@ -103,8 +112,8 @@ void read_reference(const SignalSpec& s, Channels& channels, const Case& c, Sign
 
 void read_corridor(const SignalSpec& s, Channels& channels, const Case& c, SignalResult& r) {
   if (s.low.empty()) return;
-  r.low = file_curve(s.low, s.reference_x, channels);
-  r.high = file_curve(s.high, s.reference_x, channels);
+  r.low = file_curve(s.low, s, channels);
+  r.high = file_curve(s.high, s, channels);
   r.corridor_name = "corridor of the tests";
   if (r.low.x.empty() || r.low.x != r.high.x)
     throw StudyError(c.file, s.line, "signal.corridor",

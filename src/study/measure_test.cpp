@@ -125,6 +125,13 @@ TEST_CASE("a window takes a part of the run's time, a range a part of what is in
   const SignalResult shown = compare_signal(s, channels, owner);
   CHECK(shown.model.x == std::vector<double>{10, 20});
   CHECK(shown.model.y == std::vector<double>{4, -12});
+
+  // over time the reference is cut with it
+  std::ofstream(r.path / "long.csv") << "time [ms],g [kN]\n0,9\n0.5,1\n1,3\n2,2\n2.5,7\n";
+  s.x.clear(), s.reference = "long.csv:g";
+  const SignalResult cut = compare_signal(s, channels, owner);
+  CHECK(cut.reference.x == std::vector<double>{0.5, 1, 2});
+  CHECK(cut.reference_peak == 3);
 }
 
 TEST_CASE("a quotient, a sum, a unit, and the head of a file are found") {
