@@ -106,6 +106,8 @@ struct Samples {
   TestParameters kelvin{{"ro", 1e-6}, {"bulk", 1}, {"g0", .01},
                         {"gi", .002}, {"dc", 10},  {"fo", 1}};
   TestParameters mooney{{"ro", 1e-6}, {"a", .4}, {"b", .1}, {"pr", .45}};
+  TestParameters hyperelastic{{"ro", 1e-6}, {"pr", .45},  {"c10", .1},  {"c01", .45},
+                              {"c11", .6},  {"c20", .05}, {"c02", .02}, {"c30", .01}};
   TestParameters ogden{{"ro", 1e-6},  {"pr", .45},     {"mu1", .63},  {"mu2", .0012},
                        {"mu3", -.01}, {"alpha1", 1.3}, {"alpha2", 5}, {"alpha3", -2}};
   TestParameters ogden_viscous{{"ro", 1e-6}, {"pr", .45}, {"mu1", .63}, {"alpha1", 1.3}};
@@ -138,7 +140,7 @@ struct Samples {
     visit(PiecewiseLinearPlasticity::from(tabled));
     visit(Viscoelastic::from(viscoelastic)), visit(KelvinMaxwell::from(kelvin));
     visit(MooneyRivlin::from(mooney)), visit(Ogden::from(ogden)),
-        visit(ViscousOgden::from(ogden_viscous));
+        visit(ViscousOgden::from(ogden_viscous)), visit(HyperelasticRubber::from(hyperelastic));
     visit(LowDensityFoam::from(foam)), visit(ViscousLowDensityFoam::from(foam_viscous));
     visit(ViscousFoam::from(viscous_foam)), visit(CrushableFoam::from(crushable));
   }

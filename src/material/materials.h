@@ -8,6 +8,7 @@
 #include "material/crushable_foam.h"
 #include "material/elastic.h"
 #include "material/elastic_fluid.h"
+#include "material/hyperelastic_rubber.h"
 #include "material/kelvin_maxwell.h"
 #include "material/low_density_foam.h"
 #include "material/mooney_rivlin.h"
@@ -28,10 +29,10 @@ struct MaterialList {
   static constexpr int size = sizeof...(Laws);
 };
 
-using Materials =
-    MaterialList<ElasticLaw, ElasticFluid, PlasticKinematic, Viscoelastic, Null,
-                 PiecewiseLinearPlasticity, MooneyRivlin, LowDensityFoam, ViscousLowDensityFoam,
-                 KelvinMaxwell, ViscousFoam, CrushableFoam, Ogden, ViscousOgden, Muscle>;
+using Materials = MaterialList<ElasticLaw, ElasticFluid, PlasticKinematic, Viscoelastic, Null,
+                               PiecewiseLinearPlasticity, MooneyRivlin, LowDensityFoam,
+                               ViscousLowDensityFoam, KelvinMaxwell, ViscousFoam, CrushableFoam,
+                               Ogden, ViscousOgden, Muscle, HyperelasticRubber>;
 
 // carries a law's type through a generic lambda
 template <class M>

@@ -100,6 +100,54 @@ TEST_CASE("077: viscous branches fade with their own rates") {
   CHECK(near(end, 1e-4 * (1 + 0.3 * std::exp(-0.75) + 0.1 * std::exp(-3.0)), 1e-5));
 }
 
+// The polynomial with every term, at a stretch that keeps the volume: x = lam^2 + 2/lam - 3,
+// y = 2 lam + lam^-2 - 3, sigma_1 - sigma_2 = 2 (lam^2 - 1/lam) (Wx + Wy/lam). Rivlin and Saunders.
+TEST_CASE("077_H: uniaxial stretches without change of volume") {
+  const auto m = HyperelasticRubber::from(Samples().hyperelastic);
+  for (const double lam : {0.4, 0.8, 1.3, 2.0, 3.0}) {
+    const double lateral = 1 / std::sqrt(lam);
+    const double x = lam * lam + 2 / lam - 3, y = 2 * lam + 1 / (lam * lam) - 3;
+    const double Wx = .1 + .6 * y + 2 * .05 * x + 3 * .01 * x * x, Wy = .45 + .6 * x + 2 * .02 * y;
+    const Sym3<double> s = total_stress(m, diagonal(lam, lateral, lateral));
+    CHECK(near(s.xx - s.yy, 2 * (lam * lam - 1 / lam) * (Wx + Wy / lam), 2e-6));
+    CHECK(std::abs(s.xx + s.yy + s.zz) < 1e-9 * std::abs(s.xx - s.yy));
+  }
+}
+
+// Simple shear by gamma: x = y = gamma^2, sigma_xy = 2 gamma (Wx + Wy),
+// sigma_xx - sigma_yy = gamma sigma_xy (Rivlin's universal relation),
+// sigma_zz - sigma_yy = 2 gamma^2 Wy. Free volume change: sigma = K (J - 1).
+TEST_CASE("077_H: simple shear and dilation") {
+  const auto m = HyperelasticRubber::from(Samples().hyperelastic);
+  for (const double gamma : {1e-3, 0.2, 1.0}) {
+    Mat3<double> F = identity3<double>();
+    F.a[0][1] = gamma;
+    const double x = gamma * gamma;
+    const double Wx = .1 + .6 * x + 2 * .05 * x + 3 * .01 * x * x, Wy = .45 + .6 * x + 2 * .02 * x;
+    const Sym3<double> s = total_stress(m, F);
+    CHECK(near(s.xy, 2 * gamma * (Wx + Wy), 2e-6));
+    CHECK(near(s.xx - s.yy, gamma * s.xy, 2e-6));
+    CHECK(near(s.zz - s.yy, 2 * x * Wy, 2e-6));
+  }
+  const double G = 2 * (.1 + .45), K = 2 * G * (1 + .45) / (3 * (1 - 2 * .45));
+  const Sym3<double> s = total_stress(m, diagonal(1.1, 1.1, 1.1));
+  CHECK(near(s.xx, K * (1.1 * 1.1 * 1.1 - 1), 2e-6));
+  CHECK(near(s.yy, s.xx, 1e-12));
+  CHECK(std::abs(s.xy) < 1e-15);
+}
+
+TEST_CASE("077_H: what is not supported is refused in clear words") {
+  const auto from = [](std::initializer_list<std::pair<const std::string, double>> more) {
+    TestParameters p{{"ro", 1e-6}, {"pr", .49}, {"c10", 1}, {"c01", .1}};
+    for (const auto& [field, value] : more) p.set(field, value);
+    HyperelasticRubber::from(p);
+  };
+  CHECK_NOTHROW(from({}));
+  CHECK_THROWS_AS(from({{"n", 2}}), std::invalid_argument);
+  CHECK_THROWS_AS(from({{"g", .1}}), std::invalid_argument);
+  CHECK_THROWS_AS(from({{"c10", -.2}}), std::invalid_argument);
+}
+
 // sigma = (1/J) dW/dF F^T, by central differences of the energy
 template <class M>
 void check_energy_derivative(const M& m) {
@@ -120,14 +168,15 @@ void check_energy_derivative(const M& m) {
   }
 }
 
-TEST_CASE("027 and 077: stress is the derivative of the energy") {
+TEST_CASE("rubbers: stress is the derivative of the energy") {
   const Samples samples;
   check_energy_derivative(MooneyRivlin::from(samples.mooney));
   check_energy_derivative(Ogden::from(samples.ogden));
+  check_energy_derivative(HyperelasticRubber::from(samples.hyperelastic));
 }
 
 // float lanes at strains of 1e-4: the linear answer stays good to float accuracy
-TEST_CASE("027 and 077: small strains do not cancel in float") {
+TEST_CASE("rubbers: small strains do not cancel in float") {
   const Samples samples;
   auto check = [](const auto& m) {
     using M = std::decay_t<decltype(m)>;
@@ -139,6 +188,7 @@ TEST_CASE("027 and 077: small strains do not cancel in float") {
   };
   check(MooneyRivlin::from(samples.mooney));
   check(Ogden::from(samples.ogden));
+  check(HyperelasticRubber::from(samples.hyperelastic));
 }
 
 }  // namespace

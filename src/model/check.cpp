@@ -57,6 +57,7 @@ Moduli moduli_of(const Card& card) {
     return from_shear(0.5 * twice_shear, nu);
   }
   if (law == "MAT_MOONEY-RIVLIN_RUBBER") return from_shear(2 * (value("a") + value("b")), nu);
+  if (law == "MAT_HYPERELASTIC_RUBBER") return from_shear(2 * (value("c10") + value("c01")), nu);
   if (law == "MAT_ELASTIC_FLUID") return {value("k"), 0};
   if (law == "MAT_NULL") return from_youngs(value("ym"), nu);
   if (card.has_field("g0")) return {value("bulk"), std::max(value("g0"), value("gi"))};
