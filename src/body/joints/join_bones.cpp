@@ -4,6 +4,8 @@
 #include <map>
 #include <numeric>
 
+#include "body/joints/symphysis.h"
+
 namespace fabrica::body {
 
 namespace {
@@ -29,6 +31,7 @@ class Groups {
 BetweenBones join_bones(std::vector<PlacedBone>& bones, JoinReport& report) {
   BetweenBones between;
   report.endplate_shift = fit_endplates(bones);
+  report.symphysis_shift = fit_symphysis(bones);
   report.clearance = clear_bones(bones);
   report.discs = add_discs(bones, between);
   report.articulations = add_articulations(bones, between);

@@ -8,7 +8,8 @@
 namespace fabrica::body {
 
 struct JoinReport {
-  double endplate_shift = 0;  // [mm] largest
+  double endplate_shift = 0;   // [mm] largest
+  double symphysis_shift = 0;  // [mm] of either pubic bone
   ClearanceReport clearance;
   std::vector<DiscReport> discs;
   std::vector<ArticulationReport> articulations;
@@ -16,8 +17,9 @@ struct JoinReport {
   std::vector<MeniscusReport> menisci;
 };
 
-// Fits endplates, clears the bones from one another (both move nodes of the bones), then adds
-// discs, joints by surfaces, menisci and ligaments. Throws BodyError that names what does not fit.
+// Fits endplates and symphysis, clears the bones from one another (both move nodes of the bones),
+// then adds discs, joints by surfaces, menisci and ligaments. Throws BodyError that names what does
+// not fit.
 BetweenBones join_bones(std::vector<PlacedBone>& bones, JoinReport& report);
 
 // Bones and pieces that nothing connects with the rest, over shared nodes, ties, contacts,

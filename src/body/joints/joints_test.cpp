@@ -8,6 +8,7 @@
 #include "body/joints/joint_law.h"
 #include "body/joints/ligament_law.h"
 #include "body/joints/mend.h"
+#include "body/joints/symphysis.h"
 #include "body/mesh/quality.h"
 #include "body/tables.h"
 
@@ -171,6 +172,30 @@ TEST_CASE("a moved bone gets the size of its shells back while its surface stays
     if (std::max(std::abs(p.x - 6), std::abs(p.y - 6)) < 3 && p.z > 11)
       CHECK(std::abs(cube.nodes[n].z - 12) < 0.4);
   }
+}
+
+// Two blocks 9 mm apart: 5 mm after, the far halves as they were, mirror images to the bit.
+TEST_CASE("pubic bones come to the width of a symphysis") {
+  PlacedBone right = block("hip_bone", {0, -34.5, 0}, 30, 6);
+  right.side = Side::right;
+  PlacedBone left = right;
+  left.side = Side::left;
+  left.mesh = mirrored(right.mesh);
+  for (Point& p : left.nodes) p = mirror(p);
+  std::vector<PlacedBone> bones{right, left};
+  CHECK(fit_symphysis(bones) == Approx(2));
+  double nearest = 1e30, volume = 0;
+  for (std::size_t n = 0; n < right.nodes.size(); ++n) {
+    const Point &p = bones[0].nodes[n], q = mirror(bones[1].nodes[n]);
+    CHECK((p.x == q.x && p.y == q.y && p.z == q.z));
+    nearest = std::min(nearest, -p.y);
+    if (right.nodes[n].y < -24.5) CHECK(p.y == right.nodes[n].y);
+  }
+  CHECK(nearest == Approx(2.5));
+  for (const auto& brick : right.mesh.bricks)
+    volume += volume_of(corners_of(bones[0].nodes, brick));
+  CHECK(volume == Approx(27000 + 2 * 900));
+  CHECK(fit_symphysis(bones) == Approx(0));
 }
 
 TEST_CASE("every row of the tables of joints names bones and a law that exist") {

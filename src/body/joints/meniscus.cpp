@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <set>
 
 #include "body/joints/ligament_law.h"
 #include "body/joints/meniscus_mesh.h"
