@@ -83,6 +83,7 @@ SurfaceSource::SurfaceSource(const Model& model, const ContactInput& input)
   collect_faces();
   collect_shells();
   find_bodies();
+  describe_nodes();
 }
 
 void SurfaceSource::collect_faces() {
@@ -149,6 +150,19 @@ void SurfaceSource::find_bodies() {
   for (std::size_t b = 0; b < model_.nodal_rigid_bodies.size(); ++b)
     for (int n : model_.nodal_rigid_bodies[b].nodes)
       if (node_body_[n] < 0) node_body_[n] = int(model_.parts.size() + b);
+}
+
+void SurfaceSource::describe_nodes() {
+  node_half_.assign(model_.nodes.size(), 0);
+  node_part_.assign(model_.nodes.size(), -1);
+  for (int e = 0; e < model_.shells.size(); ++e)
+    for (int n : model_.shells.node[e]) {
+      node_half_[n] = std::max(node_half_[n], 0.5 * input_.shell_thickness[e]);
+      node_part_[n] = model_.shells.part[e];
+    }
+  for (int e = 0; e < model_.solids.size(); ++e)
+    for (int n : model_.solids.node[e])
+      if (n >= 0 && node_part_[n] < 0) node_part_[n] = model_.solids.part[e];
 }
 
 double SurfaceSource::density(int part) const {
@@ -383,19 +397,9 @@ ContactSurface join_edges(const ContactSurface& a, const ContactSurface& b) {
 }
 
 void SurfaceSource::add_set_nodes(const NodeSet& set, ContactSurface& s) const {
-  std::vector<double> half(model_.nodes.size(), 0);
-  std::vector<int> part(model_.nodes.size(), -1);
-  for (int e = 0; e < model_.shells.size(); ++e)
-    for (int n : model_.shells.node[e]) {
-      half[n] = std::max(half[n], 0.5 * input_.shell_thickness[e]);
-      part[n] = model_.shells.part[e];
-    }
-  for (int e = 0; e < model_.solids.size(); ++e)
-    for (int n : model_.solids.node[e])
-      if (n >= 0 && part[n] < 0) part[n] = model_.solids.part[e];
   for (int node : set.nodes) {
     ContactNode n;
-    n.node = node, n.part = part[node], n.half_thickness = half[node];
+    n.node = node, n.part = node_part_[node], n.half_thickness = node_half_[node];
     s.nodes.push_back(n);
   }
 }

@@ -79,6 +79,7 @@ class SurfaceSource {
   };
   void collect_faces();
   void collect_shells();
+  void describe_nodes();
   void find_bodies();
   const Face* across(const std::array<int, 4>& key, int solid) const;
   double thickness_behind(const Face& face, double enough) const;
@@ -103,7 +104,9 @@ class SurfaceSource {
   const ContactInput& input_;
   std::vector<Face> faces_;                                 // ascending key
   std::vector<std::pair<std::array<int, 4>, int>> shells_;  // key and element, ascending
-  std::vector<int> node_body_;
+  std::vector<int> node_body_,
+      node_part_;                  // part: of a shell at the node, else of a solid, else -1
+  std::vector<double> node_half_;  // half the thickness of the thickest shell at the node
 };
 
 // AUTOMATIC_GENERAL, and SOFT=2 with a DEPTH that ends in 5

@@ -114,6 +114,15 @@ struct NotItself : PairFilter {
   }
 };
 
+// whether the box around a segment is farther from a point than a distance
+bool farther(const Vec3d (&corner)[4], const Vec3d& point, double distance) {
+  for (int d = 0; d < 3; ++d) {
+    const auto [low, high] = std::minmax({corner[0][d], corner[1][d], corner[2][d], corner[3][d]});
+    if (low - point[d] > distance || point[d] - high > distance) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 bool TiedNodes::carried_by(int node, int by) const {
@@ -166,6 +175,7 @@ void TiedNodes::add(int index, const ContactSurface& tracked, const ContactSurfa
       const ContactSegment& s = reference.segments[pairs.box[p]];
       Vec3d X[4];
       for (int c = 0; c < 4; ++c) X[c] = state.nodes[s.node[c]].x;
+      if (farther(X, points[i], std::min(best, tolerance(s, n.half_thickness)))) continue;
       const SurfacePoint q = s.triangle ? closest_point_triangle(X, points[i])
                                         : closest_point_quad(X, points[i], 0, 0);
       const double distance = norm(points[i] - q.x);
