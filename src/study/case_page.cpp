@@ -167,6 +167,7 @@ std::string case_page(const Case& c, const Outcome& o, const PageExtras& e) {
   if (!e.energies.empty()) {
     Chart energy{.id = "energies", .x = with_unit("time", c.time_unit), .y = "energy"};
     for (auto [name, curve] : e.energies) {
+      name = name.substr(0, name.rfind("_energy"));  // as the axis says
       std::replace(name.begin(), name.end(), '_', ' ');
       energy.traces.push_back({name, curve.x, curve.y});
     }
