@@ -169,6 +169,18 @@ void joint_rows(Rows& rows, const Body& body) {
   rows.add("farthest that a node gave way after that",
            fmt::format("{:.2f} mm ({})", clear.largest_shift, clear.largest_shift_bone), "reported",
            true, false);
+  double area = 0, height = 0;
+  std::string worst_area = "none", worst_height = "none";
+  for (const DiscReport& disc : body.joined.discs) {
+    const double a = std::abs(disc.area / disc.table_area - 1),
+                 h = std::abs(disc.height / disc.wanted - 1);
+    if (a > area) area = a, worst_area = disc.name;
+    if (h > height) height = h, worst_height = disc.name;
+  }
+  rows.add("discs against their table, largest difference of area, of height",
+           fmt::format("{:.0f} % ({}), {:.0f} % ({})", 100 * area, worst_area, 100 * height,
+                       worst_height),
+           "reported", true, false);
   const std::vector<std::string> alone = unconnected(body.bones, body.between);
   std::string names;
   for (const std::string& name : alone) names += " " + name;

@@ -54,8 +54,10 @@ class DiscMaker {
       : bones_(bones),
         row_(row),
         between_(between),
-        space_(bones, row),
-        grid_(grid_of(bones[std::size_t(row.upper)].mesh.resolution)) {}
+        space_(bones, row, DiscSpace::Section::table),
+        grid_(grid_of(bones[std::size_t(row.upper)].mesh.resolution)) {
+    space_.limit_mean_height(row.wanted);
+  }
   DiscReport make();
 
  private:
@@ -358,7 +360,8 @@ double fit_endplates(std::vector<PlacedBone>& bones) {
   };
   std::map<int, Change> changes;
   for (const DiscRow& row : disc_rows(bones)) {
-    const double missing = row.wanted - DiscSpace(bones, row).mean_height();
+    const double missing =
+        row.wanted - DiscSpace(bones, row, DiscSpace::Section::between_endplates).mean_height();
     const double shift = std::clamp(0.5 * missing, 0.0, most_shift);
     changes[row.upper].up = shift, changes[row.lower].down = shift;
   }

@@ -5,10 +5,12 @@
 //
 // c, e1 (forward), e2 (left) and the normal n of the disc's plane follow from where the anterior
 // and posterior longitudinal ligaments meet the two vertebrae; R(phi) is the ellipse of the table
-// (width, depth), drawn in where a ray along n from the plane misses an endplate. Along each ray
-// the disc spans from endplate to endplate. Nucleus: an O-grid over rho <= 0.65 (42 % of the area;
-// 40-45 % in the table); annulus: rings of bricks around it, each with two families of tension-only
-// fibres across its outer faces. The nodes of the faces are tied to the vertebrae.
+// (width, depth, scaled to its area), drawn in by up to 5 % where a ray along n from the plane
+// misses an endplate. Along each ray the disc spans from endplate to endplate, but its mean height
+// is at most that of the table: coarse bones have rounded rims, where it ends before them. Nucleus:
+// an O-grid over rho <= 0.65 (42 % of the area; 40-45 % in the table); annulus: rings of bricks
+// around it, each with two families of tension-only fibres across its outer faces. The nodes of the
+// faces are tied to the vertebrae.
 #include "body/piece.h"
 
 namespace fabrica::body {

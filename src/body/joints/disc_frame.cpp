@@ -60,11 +60,11 @@ DiscFrame disc_frame(const std::vector<PlacedBone>& bones, const DiscRow& row) {
   return frame;
 }
 
-DiscSpace::DiscSpace(const std::vector<PlacedBone>& bones, const DiscRow& row)
+DiscSpace::DiscSpace(const std::vector<PlacedBone>& bones, const DiscRow& row, Section section)
     : frame_(disc_frame(bones, row)),
       upper_(bones[std::size_t(row.upper)].nodes, bones[std::size_t(row.upper)].mesh.surface),
       lower_(bones[std::size_t(row.lower)].nodes, bones[std::size_t(row.lower)].mesh.surface) {
-  draw_outline(row);
+  draw_outline(row, section);
   take_heights();
 }
 
@@ -79,9 +79,9 @@ std::optional<DiscLine> DiscSpace::ray(double forward, double left) const {
   return DiscLine{back - down.distance, up.distance - back};
 }
 
-// the ellipse, drawn in to 0.75 of it at most until both endplates are met and the gap is that of a
-// disc; then the mean of neighbours
-void DiscSpace::draw_outline(const DiscRow& row) {
+// the ellipse, drawn in until both endplates are met and the gap is that of a disc, by a quarter at
+// most and by a twentieth where the area is to be that of the table; then the mean of neighbours
+void DiscSpace::draw_outline(const DiscRow& row, Section section) {
   double middle = 0;
   int count = 0;
   for (int i = 0; i < directions; i += 4)
@@ -93,11 +93,13 @@ void DiscSpace::draw_outline(const DiscRow& row) {
     }
   middle = count > 0 ? std::max(middle / count, 1.0) : row.height;
 
+  const bool whole = section == Section::table;
+  const double scale = whole ? std::sqrt(row.area / (0.25 * M_PI * row.depth * row.width)) : 1;
   std::vector<double> found(directions);
   for (int i = 0; i < directions; ++i) {
     const double phi = 2 * M_PI * i / directions, c = std::cos(phi), s = std::sin(phi);
-    double r = 1 / std::hypot(c / (0.5 * row.depth), s / (0.5 * row.width));
-    for (const double least = 0.75 * r; r > least; r -= 0.3) {
+    double r = scale / std::hypot(c / (0.5 * row.depth), s / (0.5 * row.width));
+    for (const double least = (whole ? 0.95 : 0.75) * r; r > least; r -= 0.3) {
       const auto line = ray(r * c, r * s);
       if (line && line->height() < 2.2 * middle && line->height() > 0.3 * middle) break;
     }
@@ -187,6 +189,21 @@ double DiscSpace::mean_height() const {
       sum += area * at(k, i).height(), weight += area;
     }
   return sum / weight;
+}
+
+void DiscSpace::limit_mean_height(double most) {
+  const std::vector<DiscLine> found = heights_;
+  double low = 0, high = 0;
+  for (const DiscLine& line : found) high = std::max(high, line.height());
+  for (int pass = 0; pass < 40 && mean_height() != most; ++pass) {
+    if (pass == 0 && mean_height() <= most) return;
+    const double limit = 0.5 * (low + high);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const double excess = std::max(found[i].height() - limit, 0.0);
+      heights_[i] = {found[i].lower + 0.5 * excess, found[i].upper - 0.5 * excess};
+    }
+    (mean_height() < most ? low : high) = limit;
+  }
 }
 
 }  // namespace fabrica::body

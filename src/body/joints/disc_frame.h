@@ -34,7 +34,9 @@ struct DiscLine {
 // faces of coarse bones are steps) and carried on where a rim is missing.
 class DiscSpace {
  public:
-  DiscSpace(const std::vector<PlacedBone>& bones, const DiscRow& row);
+  // the section of the table's area, or as much of it as lies between both endplates
+  enum class Section { table, between_endplates };
+  DiscSpace(const std::vector<PlacedBone>& bones, const DiscRow& row, Section section);
   // [mm] of the section's edge in direction phi, from forward towards left
   double radius(double phi) const;
   // lower and upper end of the disc at a place of the section [mm]
@@ -42,12 +44,15 @@ class DiscSpace {
   const DiscFrame& frame() const { return frame_; }
   // [mm] mean over the section
   double mean_height() const;
+  // Lowers the highest places alike, as at the rounded rims of bones, until the mean is at most
+  // this [mm]: there the disc ends before the bone that the mesh lacks.
+  void limit_mean_height(double most);
 
  private:
   static constexpr int directions = 48, rings = 8;
   // nothing where a ray misses an endplate or meets a wall
   std::optional<DiscLine> ray(double forward, double left) const;
-  void draw_outline(const DiscRow& row);
+  void draw_outline(const DiscRow& row, Section section);
   void take_heights();
   DiscLine& at(int ring, int direction) {
     return heights_[std::size_t(ring * directions + (direction + directions) % directions)];
