@@ -28,12 +28,12 @@ with = [{bones}]
 """
 
 
-def run(fabrica, stem, text):
+def run(fabrica, stem, text, resolution="coarse"):
     """Makes the deck of a rig, runs it into the folder `stem` and measures its joints: how far the widest came apart [mm] and
     "", or None and why the run ended."""
     rig_file, deck, joints, table = (stem.with_name(stem.name + end) for end in (".toml", ".k", "_joints.csv", ".csv"))
     rig_file.write_text(text)
-    subprocess.run([fabrica, "body", "--trial", rig_file, "--out", deck, "--quiet"],
+    subprocess.run([fabrica, "body", "--trial", rig_file, "--resolution", resolution, "--out", deck, "--quiet"],
                    check=True, capture_output=True, text=True)
     out = subprocess.run([fabrica, "run", deck, "--out", stem, "--threads", "1", "--quiet"], capture_output=True, text=True)
     if out.returncode != 0:

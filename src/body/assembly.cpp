@@ -50,7 +50,10 @@ class Assembly {
 
  private:
   static constexpr Id solid_section = 1, bone_shell_section = 2, bending_section = 3,
-                      stiff_hourglass = 1;
+                      stiff_hourglass = 1, layer_hourglass = 2;
+  // Of a flat brick of thickness h under the mode u = d xi (1 + zeta) / 2 the law holds
+  // QM C A d^2 / (4 h), full integration C A d^2 / (6 h), C = K + 4 G / 3.
+  static constexpr double flat_brick = 2.0 / 3.0;
   static constexpr double tie_reach = 30;  // [mm]
 
   RegionIds& ids(Region region) { return ids_[std::size_t(region)]; }
@@ -72,6 +75,10 @@ class Assembly {
     for (const char* t : {"t1", "t2", "t3", "t4"}) shell.set(t, 1);
     Card& h = titled(builder_, "HOURGLASS", "stiffness form for bone and cartilage");
     h.set("hgid", stiff_hourglass).set("ihq", 5).set("qm", 0.1);
+    titled(builder_, "HOURGLASS", "layers on bone: flat bricks as if integrated in full")
+        .set("hgid", layer_hourglass)
+        .set("ihq", 5)
+        .set("qm", flat_brick);
   }
 
   Id part(Region region, const std::string& name, Id section, Id material, Id hourglass,
@@ -223,7 +230,7 @@ class Assembly {
     // a layer on one bone takes contact forces at single nodes: without stiffness its one-point
     // bricks give way in modes that strain nothing
     const bool layer = p.kind == PieceKind::brick && p.bone_a == p.bone_b;
-    const Id pid = part(p.region, p.name, piece_section(p), material, layer ? stiff_hourglass : 0,
+    const Id pid = part(p.region, p.name, piece_section(p), material, layer ? layer_hourglass : 0,
                         {0, "", p.material.empty() ? p.law.keyword : p.material, p.source, -1,
                          index, int(p.bricks.size() + p.quads.size() + p.lines.size()), false});
     piece_elements(p, pid, node);

@@ -18,11 +18,19 @@ import joint_rig  # noqa: E402
 JOINTS = {
     "atlantooccipital": ("C1", "skull", []),
     "atlantoaxial": ("C2", "C1", []),
+    "C2-C3": ("C3", "C2", []),
     "C4-C5": ("C5", "C4", []),
+    "C6-C7": ("C7", "C6", []),
+    "T1-T2": ("T2", "T1", []),
     "T6-T7": ("T7", "T6", []),
+    "T10-T11": ("T11", "T10", []),
+    "T12-L1": ("L1", "T12", []),
+    "L1-L2": ("L2", "L1", []),
     "L3-L4": ("L4", "L3", []),
     "L5-sacrum": ("sacrum", "L5", []),
     "costovertebral_6": ("T6", "right.rib6", ["T5"]),
+    "costovertebral_1": ("T1", "right.rib1", []),
+    "costovertebral_11": ("T11", "right.rib11", []),
     "costochondral_6": ("right.rib6", "right.costal_cartilage6", []),
     "temporomandibular": ("skull", "mandible", []),
     "sternoclavicular": ("manubrium", "right.clavicle", []),
@@ -30,6 +38,11 @@ JOINTS = {
     "glenohumeral": ("right.scapula", "right.humerus", []),
     "elbow": ("right.humerus", "right.ulna", ["right.radius"]),
     "radioulnar": ("right.ulna", "right.radius", []),
+    "wrist": ("right.radius", "right.lunate", ["right.scaphoid", "right.ulna"]),
+    "carpometacarpal_1": ("right.trapezium", "right.metacarpal1", []),
+    "carpometacarpal_3": ("right.capitate", "right.metacarpal3", []),
+    "metacarpophalangeal_3": ("right.metacarpal3", "right.hand_phalanx3_proximal", []),
+    "interphalangeal_3": ("right.hand_phalanx3_proximal", "right.hand_phalanx3_middle", []),
     "sacroiliac": ("sacrum", "right.hip_bone", []),
     "pubic_symphysis": ("left.hip_bone", "right.hip_bone", []),
     "hip": ("right.hip_bone", "right.femur", []),
@@ -39,7 +52,14 @@ JOINTS = {
     "subtalar": ("right.talus", "right.calcaneus", []),
     "talus_navicular": ("right.talus", "right.navicular", []),
     "calcaneus_cuboid": ("right.calcaneus", "right.cuboid", []),
+    "tarsometatarsal_1": ("right.cuneiform_med", "right.metatarsal1", []),
+    "metatarsophalangeal_1": ("right.metatarsal1", "right.foot_phalanx1_proximal", []),
+    "metatarsophalangeal_3": ("right.metatarsal3", "right.foot_phalanx3_proximal", []),
+    "interphalangeal_toe_1": ("right.foot_phalanx1_proximal", "right.foot_phalanx1_distal", []),
 }
+# bones of hand and foot are rigid at coarse and cannot be potted
+AT_STANDARD = {"wrist", "carpometacarpal_1", "carpometacarpal_3", "metacarpophalangeal_3", "interphalangeal_3",
+               "tarsometatarsal_1", "metatarsophalangeal_1", "metatarsophalangeal_3", "interphalangeal_toe_1"}
 
 
 def pull(fabrica, folder, name, joint, axis, sign, force):
@@ -50,7 +70,8 @@ def pull(fabrica, folder, name, joint, axis, sign, force):
     support = (f'free   = [{free}]\n'
                f'load   = [{{ along = "{axis}", force = [[0, 0], [10, {kilonewtons}], [20, {kilonewtons}]] }}]')
     stem = folder / f"{name}_{'+' if sign > 0 else '-'}{axis}"
-    apart, failed = joint_rig.run(fabrica, stem, joint_rig.rig(timing, *joint, "pulled", support))
+    apart, failed = joint_rig.run(fabrica, stem, joint_rig.rig(timing, *joint, "pulled", support),
+                                   "standard" if name in AT_STANDARD else "coarse")
     if failed:
         return None, None, failed
     last = joint_rig.histories(stem / "csv" / "rbdout.csv")[-1]

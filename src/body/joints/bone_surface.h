@@ -54,6 +54,8 @@ class BoneSurface {
 // unit outward normal of a quad
 Point quad_normal(const Point& a, const Point& b, const Point& c, const Point& d);
 
+inline constexpr double touching = 0.02;  // [mm] before a face that counts as behind it
+
 // Does p stand less than `before` mm before a face or up to 3 mm behind it? Either diagonal counts,
 // for a warped face lies between the two.
 bool behind(const Point& p, const std::array<Point, 4>& face, double before);

@@ -22,7 +22,6 @@ namespace {
 
 constexpr double contact_gap = 0.1;      // [mm] left between layers of cartilage
 constexpr double thinnest = 0.15;        // [mm] of a layer
-constexpr double touching = 0.02;        // [mm] before a face that counts as behind it
 constexpr double under_meniscus = 1;     // [mm] of a layer that leaves room for a meniscus
 constexpr double least_jacobian = 0.36;  // of its bricks
 constexpr double capsule_length = 8;     // [mm] reference length of capsules without a row
@@ -275,26 +274,30 @@ void ArticulationMaker::joined(const Articulation& joint, ArticulationReport& re
 void ArticulationMaker::symphysis(const Articulation& joint, const Patch& a) {
   constexpr int layers = 2;
   PieceBuilder builder(bones_);
-  std::map<std::pair<int, int>, int> level;  // node of the bone, layer -> node of the piece
-  for (int node : nodes_of(joint.a, a))
-    for (int k = 0; k <= layers; ++k) {
-      const Point &p = bone(joint.a).nodes[std::size_t(node)],
-                  &q = bone(joint.b).nodes[std::size_t(node)];
-      const double t = double(k) / layers;
-      level[{node, k}] = k == 0        ? builder.of_bone(joint.a, node)
-                         : k == layers ? builder.of_bone(joint.b, node)
-                                       : builder.own((1 - t) * p + t * q);
-    }
+  const auto place = [&](int node, int k) {
+    const double t = double(k) / layers;
+    return (1 - t) * bone(joint.a).nodes[std::size_t(node)] +
+           t * bone(joint.b).nodes[std::size_t(node)];
+  };
+  std::map<std::pair<int, int>, int> made;  // node of the bone, layer -> node of the piece
+  const auto level = [&](int node, int k) {
+    const auto [at, fresh] = made.try_emplace({node, k}, -1);
+    if (fresh)
+      at->second = k == 0        ? builder.of_bone(joint.a, node)
+                   : k == layers ? builder.of_bone(joint.b, node)
+                                 : builder.own(place(node, k));
+    return at->second;
+  };
   for (int q : a.quads) {
     const auto& s = bone(joint.a).mesh.surface[std::size_t(q)];
     Corners corners;
     for (std::size_t i = 0; i < 4; ++i)
-      corners[i] = builder.at(level[{s[i], 0}]), corners[i + 4] = builder.at(level[{s[i], layers}]);
+      corners[i] = place(s[i], 0), corners[i + 4] = place(s[i], layers);
     if (scaled_jacobian(corners) < least_jacobian) continue;  // askew at the rim
     for (int k = 0; k < layers; ++k) {
       std::array<int, 8> brick;
       for (std::size_t i = 0; i < 4; ++i)
-        brick[i] = level[{s[i], k}], brick[i + 4] = level[{s[i], k + 1}];
+        brick[i] = level(s[i], k), brick[i + 4] = level(s[i], k + 1);
       builder.piece.bricks.push_back(brick);
     }
   }

@@ -24,7 +24,6 @@ constexpr double reach = 45;            // [mm] of rays along the tibia
 constexpr double rim_step = 3;          // [mm] deeper than the last place: beside the plateau
 constexpr double fibre_modulus = 0.12;  // [GPa] 140 MPa along the sweep less 20 MPa of the bricks
 constexpr double friction = 0.02;
-constexpr double touching = 0.02;  // [mm] before a face that counts as behind it
 
 const char* const names[] = {"medial", "lateral"};
 
