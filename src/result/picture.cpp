@@ -53,6 +53,16 @@ std::pair<int, std::string> start_server() {
   return {-1, ""};
 }
 
+// A server that no program has come to yet takes note of the signal and may then sleep on for
+// minutes: another one wakes it.
+void end_server(pid_t process) {
+  for (int tries = 0; tries < 500; ++tries) {
+    kill(process, tries < 250 ? SIGTERM : SIGKILL);
+    if (waitpid(process, nullptr, WNOHANG) != 0) return;
+    usleep(10000);
+  }
+}
+
 std::string program_folder() {
   std::error_code error;
   return std::filesystem::read_symlink("/proc/self/exe", error).parent_path().string();
@@ -79,8 +89,7 @@ Display::Display() {
 
 Display::~Display() {
   if (process_ <= 0) return;
-  kill(process_, SIGTERM);
-  waitpid(process_, nullptr, 0);
+  end_server(process_);
   had_earlier_ ? setenv("DISPLAY", earlier_.c_str(), 1) : unsetenv("DISPLAY");
 }
 
