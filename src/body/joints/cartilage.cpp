@@ -226,7 +226,9 @@ void ArticulationMaker::sliding(const Articulation& joint, const Patch& a, const
   ContactPair contact;
   contact.name = name(joint);
   contact.friction = 0.02;
-  contact.source = "friction of cartilage on cartilage 0.02; estimated";
+  contact.source = joint.kind == ArticulationKind::arch
+                       ? "friction of bone on bone as of cartilage, 0.02; estimated"
+                       : "friction of cartilage on cartilage 0.02; estimated";
   contact.a.quads = layer(joint, joint.a, joint.b, a, joint.cartilage_a, report.contact_gap);
   contact.b.quads = layer(joint, joint.b, joint.a, b, joint.cartilage_b, report.contact_gap);
   if (!contact.b.quads.empty()) take_out_penetrating(contact.a.quads, contact.b.quads);

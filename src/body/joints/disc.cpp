@@ -9,6 +9,7 @@
 
 #include "body/joints/disc_frame.h"
 #include "body/joints/joint_law.h"
+#include "body/joints/ligament_law.h"
 #include "body/joints/mend.h"
 #include "body/joints/piece_builder.h"
 #include "body/mesh/polish.h"
@@ -195,12 +196,8 @@ void DiscMaker::fibres(int ring_piece, int number) {
       fmt::format("{}.mid.disc_{}.fibres{}", name_of(upper.region), row_.name, number);
   builder.piece.region = upper.region;
   builder.piece.kind = PieceKind::spring;
-  builder.piece.law = {"MAT_SPRING_NONLINEAR_ELASTIC",
-                       {},
-                       "lcd",
-                       {{-1000, 0}, {0, 0}, {1000, 1000}},
-                       "moduli s41598-025-22755-z Table 1; share of the annulus Shirazi-Adl 1986",
-                       "read"};
+  builder.piece.law =
+      pull_only("moduli s41598-025-22755-z Table 1; share of the annulus Shirazi-Adl 1986", "read");
   builder.piece.source = builder.piece.law.source;
   builder.piece.bone_a = part_name(upper, "");
   builder.piece.bone_b = part_name(bones_[std::size_t(row_.lower)], "");
