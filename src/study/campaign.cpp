@@ -20,12 +20,15 @@ namespace {
 namespace fs = std::filesystem;
 
 // A row's folder belongs to one process at a time; the lock goes when the process ends, however.
+// What a killed study had started may hold it for a moment longer: tries, one every 10 ms, are how
+// often all rows together wait for that.
 class RowLock {
  public:
-  explicit RowLock(const std::string& folder) {
+  RowLock(const std::string& folder, int& tries) {
     fs::create_directories(folder);
     file_ = open((folder + "/lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-    held_ = file_ >= 0 && flock(file_, LOCK_EX | LOCK_NB) == 0;
+    const auto take = [&] { return file_ >= 0 && flock(file_, LOCK_EX | LOCK_NB) == 0; };
+    while (!(held_ = take()) && tries > 0) --tries, usleep(10000);
   }
   RowLock(RowLock&& other) noexcept : file_(other.file_), held_(other.held_) { other.file_ = -1; }
   RowLock(const RowLock&) = delete;
@@ -64,10 +67,11 @@ void run_rows(const Plan& plan, const StudyOptions& o, const std::string& out) {
   std::vector<Command> commands;
   std::vector<std::pair<std::size_t, std::string>> due;  // row, fingerprint
   std::size_t finished = 0;
+  int tries = 200;
   for (std::size_t row = 0; row < plan.rows.size(); ++row) {
     if (o.row > 0 && row + 1 != std::size_t(o.row)) continue;
     const std::string folder = folder_of(out, row);
-    RowLock lock(folder);
+    RowLock lock(folder, tries);
     if (!lock.held()) {
       fmt::print("row {}: another process runs it\n", row + 1);
       continue;
