@@ -273,6 +273,9 @@ struct Layout {
   double top = 0, legend = 0,
          caption = 0;  // height of the title, width of the legend, height of a caption
   int columns = 1, rows = 1;
+  // of one panel, without its caption
+  double width(const PictureOptions& o) const { return (o.width - legend) / columns; }
+  double height(const PictureOptions& o) const { return (o.height - top) / rows - caption; }
 };
 Layout arrange(const PictureOptions& o, int panels, double aspect, double legend) {
   Layout best;
@@ -284,8 +287,7 @@ Layout arrange(const PictureOptions& o, int panels, double aspect, double legend
     l.legend = legend;
     l.columns = columns;
     l.rows = (panels + columns - 1) / columns;
-    const double w = (o.width - legend) / columns, h = (o.height - l.top) / l.rows - l.caption;
-    const double size = std::min(w, h * aspect);
+    const double size = std::min(l.width(o), l.height(o) * aspect);
     if (size > largest * 1.001) {
       largest = size;
       best = l;
@@ -297,7 +299,7 @@ Layout arrange(const PictureOptions& o, int panels, double aspect, double legend
 // Takes from the picture what its panels, wide over high, would leave empty.
 void trim(PictureOptions& o, int panels, double aspect, double legend) {
   const Layout l = arrange(o, panels, aspect, legend);
-  const double w = (o.width - l.legend) / l.columns, h = (o.height - l.top) / l.rows - l.caption;
+  const double w = l.width(o), h = l.height(o);
   const double least = 0.2 * std::min(w, h);
   if (w > h * aspect)
     o.width = int(std::lround(l.legend + l.columns * std::max(h * aspect, least)));
@@ -403,7 +405,7 @@ void draw(PictureOptions o) {
   const double shape = std::max(e[1] - e[0], 1e-30) / std::max(e[3] - e[2], 1e-30);
   if (o.trim) trim(o, int(panels.size()), shape, strip);
   const Layout l = arrange(o, int(panels.size()), shape, strip);
-  const double cell_w = (o.width - l.legend) / l.columns, cell_h = (o.height - l.top) / l.rows;
+  const double w = l.width(o), h = l.height(o);
 
   vtkNew<vtkRenderWindow> window;
   window->SetOffScreenRendering(1);
@@ -421,20 +423,19 @@ void draw(PictureOptions o) {
     draw_scale(canvas, o.color, range, o.width - strip + 12, l.top, o.height - l.top - 10);
 
   for (std::size_t i = 0; i < panels.size(); ++i) {
-    const double left = cell_w * double(int(i) % l.columns),
-                 top = l.top + cell_h * double(int(i) / l.columns);
-    const double h = cell_h - l.caption;
+    const double left = w * double(int(i) % l.columns),
+                 top = l.top + (h + l.caption) * double(int(i) / l.columns);
     vtkNew<vtkRenderer> renderer;
     renderer->SetBackground(1, 1, 1);
-    renderer->SetViewport(left / o.width, 1 - (top + h) / o.height, (left + cell_w) / o.width,
+    renderer->SetViewport(left / o.width, 1 - (top + h) / o.height, (left + w) / o.width,
                           1 - top / o.height);
     add_lights(renderer);
     add_actors(renderer, panels[i],
                o.edges.value_or(panels[i].surface->GetNumberOfCells() <= 20000), o.feature_angle);
-    set_camera(renderer, axes, e, cell_w / h, o.zoom);
+    set_camera(renderer, axes, e, w / h, o.zoom);
     window->AddRenderer(renderer);
     if (o.caption)
-      canvas.label({left + cell_w / 2,
+      canvas.label({left + w / 2,
                     top + h + l.caption / 2,
                     fmt::format("t = {:.4g}", panels[i].time),
                     16,
