@@ -12,7 +12,7 @@
 
 #include "body/error.h"
 #include "body/joint_gaps.h"
-#include "body/mesh/quality.h"
+#include "body/turned_bricks.h"
 #include "result/d3plot.h"
 
 namespace fabrica {
@@ -93,6 +93,21 @@ void write_csv(const std::string& path, const std::vector<JointRow>& rows,
   if (!out) throw BodyError("cannot write " + path);
 }
 
+void print_turned(const std::map<std::string, body::TurnedBricks>& kinds) {
+  fmt::print(
+      "\nbricks with a corner turned over\n\n| kind of part | bricks | most in a state | at ms | "
+      "at the end | ever |\n| --- | --- | --- | --- | --- | --- |\n");
+  for (const auto& [kind, n] : kinds)
+    fmt::print("| {} | {} | {} | {:.1f} | {} | {} |\n", kind, n.bricks, n.most, n.most_time, n.last,
+               n.ever);
+}
+
+body::TurnedBrickCounter counter_of(const ResultMesh& mesh) {
+  std::vector<std::string> title;
+  for (const int part : mesh.solid_part) title.push_back(mesh.part_title[std::size_t(part)]);
+  return {mesh.solid, title};
+}
+
 int joints_command(const JointsCommand& c) {
   const std::vector<JointRow> rows = rows_of(c.joints);
   const std::filesystem::path result = c.result;
@@ -102,12 +117,14 @@ int joints_command(const JointsCommand& c) {
   std::vector<body::JointFollower> followers;
   for (const JointRow& row : rows)
     followers.emplace_back(surfaces.of(row, row.a), surfaces.of(row, row.b));
+  body::TurnedBrickCounter turned = counter_of(reader.mesh());
   std::vector<body::Point> nodes(std::size_t(reader.mesh().nodes()));
   for (std::size_t i = 0; i < reader.times().size(); ++i) {
     const AnimationState state = reader.state(int(i));
     for (std::size_t n = 0; n < nodes.size(); ++n)
       nodes[n] = {state.position[3 * n], state.position[3 * n + 1], state.position[3 * n + 2]};
     for (body::JointFollower& f : followers) f.take(state.time, nodes);
+    turned.take(state.time, nodes, state.solid_alive);
   }
   std::vector<JointGap> gaps;
   for (const body::JointFollower& f : followers) gaps.push_back(f.gap());
@@ -116,6 +133,7 @@ int joints_command(const JointsCommand& c) {
              reader.times().empty() ? 0 : reader.times().back());
   print_largest(rows, gaps, JointKind::sliding, c.rows);
   print_largest(rows, gaps, JointKind::tied, c.rows);
+  print_turned(turned.kinds());
   if (!c.csv.empty()) write_csv(c.csv, rows, gaps);
   return 0;
 }
@@ -123,7 +141,8 @@ int joints_command(const JointsCommand& c) {
 }  // namespace
 
 void add_joints(CLI::App& app, JointsCommand& c) {
-  auto* cmd = app.add_subcommand("joints", "How far the joints of a body came apart in a run");
+  auto* cmd = app.add_subcommand(
+      "joints", "How far the joints of a body came apart in a run, and which bricks turned over");
   cmd->add_option("result", c.result, "folder of the run, or its d3plot")->required();
   cmd->add_option("--joints", c.joints, "NAME_joints.csv, as fabrica body writes it")
       ->required()
