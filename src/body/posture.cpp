@@ -4,8 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
+#include "body/catmull_rom.h"
 #include "body/tables.h"
 
 namespace fabrica::body {
@@ -35,6 +37,30 @@ const Joint* find_joint(const std::string& name) {
   return nullptr;
 }
 
+Joint& joint_of_row(std::vector<Joint>& joints, const Table& table, int row) {
+  const auto at = std::find_if(joints.begin(), joints.end(),
+                               [&](const Joint& j) { return j.name == table.text(row, "joint"); });
+  if (at == joints.end())
+    table.fail(row, fmt::format("no joint '{}' in joint_tree.csv", table.text(row, "joint")));
+  return *at;
+}
+
+void read_paths(std::vector<Joint>& joints) {
+  const Table table("anatomy/joint_paths.csv");
+  for (int r = 0; r < table.rows(); ++r) {
+    std::vector<PathPoint>& path = joint_of_row(joints, table, r).path;
+    const PathPoint point{table.number(r, "angle"),
+                          {table.number(r, "x"), table.number(r, "y"), table.number(r, "z")},
+                          table.number(r, "varus"),
+                          table.number(r, "internal")};
+    const double expected =
+        path.size() < 2 ? (path.empty() ? 0 : point.angle) : path[1].angle * double(path.size());
+    if (std::abs(point.angle - expected) > 1e-9 || (!path.empty() && point.angle <= 0))
+      table.fail(r, "angles of a path start at 0 and grow by equal steps");
+    path.push_back(point);
+  }
+}
+
 std::vector<Joint> read_joints() {
   const Table tree("anatomy/joint_tree.csv"), axes("anatomy/joint_axes.csv");
   std::vector<Joint> joints;
@@ -44,17 +70,16 @@ std::vector<Joint> read_joints() {
                       tree.text(r, "child"),
                       tree.number(r, "paired") != 0,
                       {tree.number(r, "x"), tree.number(r, "y"), tree.number(r, "z")},
+                      {},
                       {}});
   for (int r = 0; r < axes.rows(); ++r) {
-    const auto at = std::find_if(joints.begin(), joints.end(),
-                                 [&](const Joint& j) { return j.name == axes.text(r, "joint"); });
-    if (at == joints.end())
-      axes.fail(r, fmt::format("no joint '{}' in joint_tree.csv", axes.text(r, "joint")));
+    Joint& joint = joint_of_row(joints, axes, r);
     Point a{axes.number(r, "ax"), axes.number(r, "ay"), axes.number(r, "az")};
     a = (1 / norm(a)) * a;
-    at->axes.push_back({at->name, axes.text(r, "coordinate"), a, axes.number(r, "low"),
-                        axes.number(r, "high"), axes.text(r, "source")});
+    joint.axes.push_back({joint.name, axes.text(r, "coordinate"), a, axes.number(r, "low"),
+                          axes.number(r, "high"), axes.text(r, "source")});
   }
+  read_paths(joints);
   return joints;
 }
 
@@ -147,6 +172,21 @@ void set_arm(Posture& posture, const Name& name, const std::string& text, double
 }
 
 }  // namespace
+
+PathPoint Joint::path_at(double at) const {
+  if (path.size() < 2) return {at, {0, 0, 0}, 0, 0};
+  const double step = path[1].angle, place = std::clamp(at / step, 0.0, double(path.size()) - 1);
+  const int i = std::min(int(place), int(path.size()) - 2);
+  const auto of = [&](auto value) {
+    return catmull_rom(int(path.size()), i, place - i,
+                       [&](int k) { return value(path[std::size_t(k)]); });
+  };
+  PathPoint p{at, {0, 0, 0}, 0, 0};
+  for (int k = 0; k < 3; ++k) p.shift[k] = of([k](const PathPoint& q) { return q.shift[k]; });
+  p.varus = of([](const PathPoint& q) { return q.varus; });
+  p.internal = of([](const PathPoint& q) { return q.internal; });
+  return p;
+}
 
 const std::vector<Joint>& joint_tree() {
   static const std::vector<Joint> joints = read_joints();

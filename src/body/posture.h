@@ -18,12 +18,22 @@ struct JointAxis {
   double low, high;  // [deg] range from the standing posture
   std::string source;
 };
+// What the bones of a joint do beside its turn by the first of its angles, a row of
+// data/anatomy/joint_paths.csv. Rows of a joint follow one another in equal steps from angle 0.
+struct PathPoint {
+  double angle;            // [deg] the first of the joint
+  Point shift;             // [mm] of the child with the centre, standing body, right side
+  double varus, internal;  // [deg] turns of the child about x and z, standing body, right side
+};
 // One joint, a row of data/anatomy/joint_tree.csv, with its axes in order of (1) of skeleton.h.
 struct Joint {
   std::string name, parent, child;
   bool paired;
   Point centre;  // [mm] standing, right side or midline
   std::vector<JointAxis> axes;
+  std::vector<PathPoint> path;  // empty: it turns about its centre
+  // at an angle [deg]: curve of Catmull and Rom through the rows; zero without a path
+  PathPoint path_at(double angle) const;
 };
 // all joints, parents before children
 const std::vector<Joint>& joint_tree();

@@ -56,8 +56,17 @@ Placement standing_frame(const std::string& frame, Side side) {
   return side == Side::left ? mirror(at->second) : at->second;
 }
 
-// the rotation of (1): a mirrored joint turns about the mirrored axis, a pseudovector
-Mat3d turn(const Joint& joint, Side side, const Posture& posture) {
+// how a joint moves its child in the axes of the standing body
+struct Motion {
+  Mat3d turn;   // Q of (1)
+  Point shift;  // d of (1) [mm]
+};
+
+// A mirrored joint turns about the mirrored axis, a pseudovector.
+Motion motion(const Joint& joint, Side side, const Posture& posture) {
+  const auto turned = [side](const Point& a, double degrees) {
+    return rotation_about(side == Side::left ? Point{-a.x, a.y, -a.z} : a, degrees * degree);
+  };
   Mat3d q{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   for (const JointAxis& axis : joint.axes) {
     const double angle =
@@ -67,10 +76,13 @@ Mat3d turn(const Joint& joint, Side side, const Posture& posture) {
           "{}.{} = {:g} degrees is out of its range {:g} to {:g}; the nearest possible is {:g}",
           joint.name, axis.coordinate, angle, axis.low, axis.high,
           std::clamp(angle, axis.low, axis.high)));
-    const Point a = side == Side::left ? Point{-axis.axis.x, axis.axis.y, -axis.axis.z} : axis.axis;
-    q = q * rotation_about(a, angle * degree);
+    q = q * turned(axis.axis, angle);
   }
-  return q;
+  if (joint.path.empty()) return {q, {0, 0, 0}};
+  const PathPoint at = joint.path_at(
+      posture.get(joint.name, joint.paired ? side : Side::midline, joint.axes.front().coordinate));
+  return {q * turned({1, 0, 0}, at.varus) * turned({0, 0, 1}, at.internal),
+          side == Side::left ? mirror(at.shift) : at.shift};
 }
 
 Point scaled(const Point& p, const Point& s) { return {s.x * p.x, s.y * p.y, s.z * p.z}; }
@@ -99,9 +111,9 @@ Skeleton::Skeleton(const Subject& subject, const Posture& posture) : subject_(su
       const Side key = joint.paired ? side : Side::midline;
       const Placement child0 = standing_frame(joint.child, key);
       const Point centre0 = key == Side::left ? mirror(joint.centre) : joint.centre;
-      const Mat3d q = turn(joint, key, posture);
+      const Motion moved = motion(joint, key, posture);
       Placement child;
-      Point centre = posture.pelvis.t + centre0;
+      Point centre = posture.pelvis.t + centre0, shift = posture.pelvis.R * moved.shift;
       Mat3d carried = posture.pelvis.R;
       if (joint.parent != "ground") {
         const bool parent_paired = has_frame(joint.parent, key) && key != Side::midline;
@@ -111,10 +123,13 @@ Skeleton::Skeleton(const Subject& subject, const Posture& posture) : subject_(su
         centre =
             parent(scaled(parent0.inverse(centre0), subject.scale_of(carrier_of(joint.parent))));
         carried = parent.R * transpose(parent0.R);
+        shift = parent.R * scaled(transpose(parent0.R) * moved.shift,
+                                  subject.scale_of(carrier_of(joint.parent)));
       }
-      child.R = carried * q * child0.R;
-      child.t = centre - child.R * scaled(child0.inverse(centre0),
-                                          subject.scale_of(carrier_of(joint.child)));
+      child.R = carried * moved.turn * child0.R;
+      child.t =
+          centre + shift -
+          child.R * scaled(child0.inverse(centre0), subject.scale_of(carrier_of(joint.child)));
       frames_[{joint.child, key}] = child;
       centres_[{joint.name, key}] = centre;
     }

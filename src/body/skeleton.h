@@ -1,14 +1,15 @@
 #pragma once
 // The frames of all bones of a subject in a posture. The skeleton is a tree of frames; every joint
-// turns its child about a fixed centre in its parent:
+// turns its child about a fixed centre c in its parent and, where it has a path, shifts it:
 //
-//   child = parent o turn(centre, Q),   Q = R(a1, q1) R(a2, q2) R(a3, q3)          (1)
+//   child = parent o shift(d) o turn(c, Q),   Q = R(a1, q1) R(a2, q2) R(a3, q3) R(x, v) R(z, i) (1)
 //
 // with the axes a of data/anatomy/joint_axes.csv in the global axes of the standing body and the
-// angles q from there. All angles zero give the standing placement of data/anatomy/assembly.csv
-// exactly. Left joints mirror right ones. Ribs, cartilages and sternum ride the thorax frame; each
-// rib then turns about its head so that it follows its vertebra while its front end stays with the
-// sternum (rib_placement).
+// angles q from there; d, v and i follow from q1 by the curves of data/anatomy/joint_paths.csv
+// (knee and patella, docs/theory/knee.md), 0 elsewhere. All angles zero give the standing placement
+// of data/anatomy/assembly.csv exactly. Left joints mirror right ones. Ribs, cartilages and sternum
+// ride the thorax frame; each rib then turns about its head so that it follows its vertebra while
+// its front end stays with the sternum (rib_placement).
 #include <map>
 #include <string>
 #include <vector>

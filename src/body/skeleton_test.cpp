@@ -60,12 +60,15 @@ TEST_CASE("the standing skeleton of the man of the tables stands where the table
   CHECK(frames > 30);
 }
 
+// The seat rows bend knee and patella about an axis that tips the shank 13 degrees inwards against
+// the thigh, which no knee does; legs are held against the seated landmarks, below.
 TEST_CASE("the driver's frames turn as in the seat rows and the landmarks lie within 15 mm") {
   const Skeleton standing(man(), named_posture("standing")), driver(man(), named_posture("driver"));
   const Table t("anatomy/assembly.csv");
   for (int r = 0; r < t.rows(); ++r) {
     if (t.text(r, "posture") != "seat") continue;
     const std::string& name = t.text(r, "frame");
+    if (name == "femur" || name == "patella" || name == "tibia" || name == "foot") continue;
     const bool arm = name == "humerus" || name == "ulna" || name == "radius" || name == "hand";
     const Side side = driver.has_frame(name, Side::right) ? Side::right : Side::midline;
     fabrica::Mat3d R;
@@ -74,11 +77,28 @@ TEST_CASE("the driver's frames turn as in the seat rows and the landmarks lie wi
         R(i, j) = t.number(r, "r" + std::to_string(i + 1) + std::to_string(j + 1));
     CAPTURE(name);
     // angles of postures.csv have two digits; the arm is a least-squares fit of anatomical axes
-    // 5 degrees about the ankle's oblique axis instead of the seat's transverse one: sin 10 x 5.4
-    if (!arm) CHECK(angle_between(driver.frame(name, side).R, R) < (name == "foot" ? 1.5 : 0.5));
+    if (!arm) CHECK(angle_between(driver.frame(name, side).R, R) < 0.5);
   }
   CHECK(landmark_error(standing, standing, "stand") < 0.1);
   CHECK(landmark_error(driver, standing, "seat") < 15);
+}
+
+// The foot stands where the table has it, as near as a goal is met (5 mm), and the knee within half
+// of what the seated landmarks are good for (20 mm).
+TEST_CASE("the driver's knee, ankle and foot lie on the seated landmarks") {
+  const Skeleton driver(man(), named_posture("driver"));
+  const Table t("anatomy/landmarks.csv");
+  int found = 0;
+  for (int r = 0; r < t.rows(); ++r) {
+    const std::string &name = t.text(r, "name"), &frame = t.text(r, "frame");
+    const bool knee = name == "knee_joint_centre";
+    if (!knee && name != "ankle_joint_centre" && frame != "foot") continue;
+    CAPTURE(name);
+    const Point now = driver.carried(frame, Side::right, landmark(t, r, "stand"));
+    CHECK(norm(now - landmark(t, r, "seat")) < (knee ? 10 : 5));
+    ++found;
+  }
+  CHECK(found > 6);
 }
 
 TEST_CASE("left and right are mirror images in a posture set on both sides") {
@@ -94,12 +114,42 @@ TEST_CASE("left and right are mirror images in a posture set on both sides") {
 
 TEST_CASE("a joint keeps its centre in parent and child and turns by its angle") {
   Posture posture = named_posture("standing");
+  set_angle(posture, "elbow.right=90");
+  const Skeleton before(man(), named_posture("standing")), after(man(), posture);
+  CHECK(angle_between(before.frame("ulna", Side::right).R, after.frame("ulna", Side::right).R) ==
+        doctest::Approx(90));
+  CHECK(norm(before.joint_centre("elbow", Side::right) - after.joint_centre("elbow", Side::right)) <
+        1e-9);
+  CHECK(norm(before.frame("ulna", Side::left).t - after.frame("ulna", Side::left).t) < 1e-9);
+}
+
+// On a path the child turns and shifts by its row: against (1) of skeleton.h written out for the
+// knee at a knot, by hand of the tables; what is between knots is as smooth as its neighbours.
+TEST_CASE("a joint with a path shifts and turns its child by the row of its angle") {
+  Posture posture = named_posture("standing");
   set_angle(posture, "knee.right=90");
   const Skeleton before(man(), named_posture("standing")), after(man(), posture);
-  CHECK(angle_between(before.frame("tibia", Side::right).R, after.frame("tibia", Side::right).R) ==
-        doctest::Approx(90));
-  CHECK(norm(before.joint_centre("knee", Side::right) - after.joint_centre("knee", Side::right)) <
-        1e-9);
+  const Table paths("anatomy/joint_paths.csv"), axes("anatomy/joint_axes.csv"),
+      tree("anatomy/joint_tree.csv");
+  const auto row_of = [](const Table& t, const char* joint, double angle) {
+    for (int r = 0; r < t.rows(); ++r)
+      if (t.text(r, "joint") == joint && (angle < 0 || t.number(r, "angle") == angle)) return r;
+    return -1;
+  };
+  const int p = row_of(paths, "knee", 90), a = row_of(axes, "knee", -1),
+            c = row_of(tree, "knee", -1);
+  REQUIRE(p >= 0);
+  constexpr double degree = 3.14159265358979 / 180;
+  const Point axis = unit({axes.number(a, "ax"), axes.number(a, "ay"), axes.number(a, "az")});
+  const fabrica::Mat3d q = rotation_about(axis, 90 * degree) *
+                           rotation_about({1, 0, 0}, paths.number(p, "varus") * degree) *
+                           rotation_about({0, 0, 1}, paths.number(p, "internal") * degree);
+  const Placement start = before.frame("tibia", Side::right),
+                  now = after.frame("tibia", Side::right);
+  CHECK(angle_between(now.R, q * start.R) < 1e-5);
+  const Point centre{tree.number(c, "x"), tree.number(c, "y"), tree.number(c, "z")},
+      shift{paths.number(p, "x"), paths.number(p, "y"), paths.number(p, "z")};
+  CHECK(norm(now.t - (centre + shift + q * (start.t - centre))) < 0.01);  // digits of the tables
   CHECK(norm(before.frame("tibia", Side::left).t - after.frame("tibia", Side::left).t) < 1e-9);
   // the shank swings back: the ankle is behind and above
   CHECK(after.joint_centre("ankle", Side::right).x <

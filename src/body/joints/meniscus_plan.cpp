@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "body/catmull_rom.h"
 #include "body/tables.h"
 
 namespace fabrica::body {
@@ -10,11 +11,6 @@ namespace fabrica::body {
 namespace {
 
 constexpr int pieces = 96;  // of the curves, where lengths and areas are summed
-
-// Catmull and Rom between b and c
-double spline(double a, double b, double c, double d, double t) {
-  return b + 0.5 * t * (c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a)));
-}
 
 double cross2(const PlanPoint& o, const PlanPoint& a, const PlanPoint& b) {
   return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
@@ -41,11 +37,8 @@ MeniscusPlan::Station MeniscusPlan::station(double s) const {
   const double at = std::clamp(s, 0.0, 1.0) * last;
   const int i = std::min(int(at), last - 1);
   const auto of = [&](auto value) {
-    const auto kept = [&](int k) { return value(stations_[std::size_t(std::clamp(k, 0, last))]); };
-    // beyond the ends the curve goes straight on
-    const double before = i > 0 ? kept(i - 1) : 2 * kept(0) - kept(1);
-    const double after = i + 1 < last ? kept(i + 2) : 2 * kept(last) - kept(last - 1);
-    return spline(before, kept(i), kept(i + 1), after, at - i);
+    return catmull_rom(last + 1, i, at - i,
+                       [&](int k) { return value(stations_[std::size_t(k)]); });
   };
   return {{of([](const Station& q) { return q.inner.x; }),
            of([](const Station& q) { return q.inner.y; })},
