@@ -188,6 +188,20 @@ TEST_CASE("pots become rigid bodies whose section holds every element beside the
   CHECK(section.shells.size() > 0);
 }
 
+// Viscous forms, the default, dissipate what the hourglass modes take up.
+TEST_CASE("cortical shells have the stiffness form of hourglass control") {
+  const Mounted mounted(rig_of(good));
+  int cortical = 0;
+  for (const Part& part : mounted.model->parts) {
+    if (!part.title.ends_with(".cortical")) continue;
+    ++cortical;
+    REQUIRE(part.hourglass);
+    CHECK(part.hourglass->type == 4);
+    CHECK(part.hourglass->coefficient == doctest::Approx(0.05));
+  }
+  CHECK(cortical == 1);
+}
+
 TEST_CASE("a pot turns about its pivot, with the mass of the bone in it") {
   std::vector<double> mass, distance;
   for (const Rig& r :
