@@ -34,8 +34,12 @@ body::BodyOptions options_of(const BodyCommand& c) {
     throw BodyError(fmt::format(
         "--only {}: the body is made of its skeleton so far; the only choice is skeleton", c.only));
   body::BodyOptions options;
-  options.subject = body::make_subject(c.sex, c.stature, c.mass);
-  options.posture = body::named_posture(c.posture);
+  if (c.draw > 0) {
+    options = drawn_body(c.draw);
+  } else {
+    options.subject = body::make_subject(c.sex, c.stature, c.mass);
+    options.posture = body::named_posture(c.posture);
+  }
   for (const std::string& assignment : c.set) body::set_angle(options.posture, assignment);
   if (!c.goals.empty()) body::solve(options.posture, options.subject, body::read_goals(c.goals));
   options.resolution = body::resolution_named(c.resolution);
@@ -184,6 +188,10 @@ void add_body(CLI::App& app, BodyCommand& c) {
   cmd->add_flag("--no-joints", c.no_joints, "bones alone, without what joins them");
   cmd->add_option("--random", c.random,
                   "make so many bodies of random posture and size, report each, write nothing");
+  cmd->add_option("--draw", c.draw,
+                  "make the one of them with this number, counted from 1, in place of --sex, "
+                  "--stature, --mass and --posture")
+      ->check(CLI::PositiveNumber);
   cmd->add_flag("--list", c.list, "list the bones");
   cmd->add_flag("--quiet", c.quiet, "no progress");
   cmd->callback([&c] { throw CLI::RuntimeError(body_command(c)); });

@@ -12,7 +12,7 @@ namespace fabrica {
 struct BodyCommand {
   std::string sex = "male", posture = "standing", resolution = "coarse", goals, out = "body.k",
               only = "skeleton", trial = "none", fracture = "count";
-  int random = 0;
+  int random = 0, draw = 0;
   double stature = 1750, mass = 77;
   std::vector<std::string> set, bones;
   bool pictures = false, list = false, quiet = false, no_joints = false;

@@ -17,10 +17,10 @@ double draw(std::mt19937_64& random, double low, double high, double share) {
   return 0.5 * (low + high) + share * (unit - 0.5) * (high - low);
 }
 
-body::BodyOptions draw_options(std::mt19937_64& random, body::Resolution resolution, bool joints) {
+std::mt19937_64 first_draw() { return std::mt19937_64(1543); }
+
+body::BodyOptions next_body(std::mt19937_64& random) {
   body::BodyOptions options;
-  options.resolution = resolution;
-  options.joints = joints;
   const double stature = draw(random, 1550, 1900, 1), mass = draw(random, 50, 110, 1);
   options.subject = body::make_subject("male", stature, mass);
   for (const body::Joint& joint : body::joint_tree()) {
@@ -39,13 +39,20 @@ body::BodyOptions draw_options(std::mt19937_64& random, body::Resolution resolut
 
 }  // namespace
 
+body::BodyOptions drawn_body(int number) {
+  std::mt19937_64 random = first_draw();
+  for (int i = 1; i < number; ++i) next_body(random);
+  return next_body(random);
+}
+
 int draw_bodies(int count, const std::string& resolution, bool joints) {
-  std::mt19937_64 random(1543);
+  std::mt19937_64 random = first_draw();
   int failures = 0, good = 0;
   double worst = 1;
   for (int i = 1; i <= count; ++i) {
-    const body::BodyOptions options =
-        draw_options(random, body::resolution_named(resolution), joints);
+    body::BodyOptions options = next_body(random);
+    options.resolution = body::resolution_named(resolution);
+    options.joints = joints;
     const std::string who =
         fmt::format("{:3}: {:.0f} mm {:.0f} kg", i, options.subject.stature, options.subject.mass);
     try {
