@@ -32,16 +32,14 @@ bool is_paired(const Skeleton& skeleton, const std::string& bone, const std::str
          bone.starts_with("costal_cartilage") || bone == "hip_bone";
 }
 
-PlacedBone place(const BoneMesh& mesh, Side side, const std::string& frame,
-                 const Skeleton& skeleton) {
+PlacedBone placed(const BoneMesh& mesh, Side side, const std::string& frame,
+                  const Skeleton& skeleton) {
   PlacedBone bone;
   bone.mesh = side == Side::left ? mirrored(mesh) : mesh;
   bone.side = side;
   bone.frame = frame;
   bone.region = region_of_frame(frame);
-  bone.placement = skeleton.bone(mesh.name, frame, side);
-  bone.nodes.reserve(bone.mesh.nodes.size());
-  for (const Point& p : bone.mesh.nodes) bone.nodes.push_back(bone.placement(p));
+  place(bone, skeleton);
   return bone;
 }
 
@@ -78,6 +76,7 @@ Body build_body(const BodyOptions& options) {
             Skeleton(options.subject, options.posture),
             options.resolution,
             {},
+            {},
             {}};
   std::vector<BoneName> only;
   for (const std::string& text : options.only) {
@@ -100,11 +99,12 @@ Body build_body(const BodyOptions& options) {
     const BoneMesh mesh = mesh_bone({name, options.resolution, options.subject.scale_of(carrier)});
     if (is_paired(body.skeleton, name, frame)) {
       for (const Side side : {Side::right, Side::left})
-        if (wanted(name, side)) body.bones.push_back(place(mesh, side, frame, body.skeleton));
+        if (wanted(name, side)) body.bones.push_back(placed(mesh, side, frame, body.skeleton));
     } else {
-      body.bones.push_back(place(mesh, Side::midline, frame, body.skeleton));
+      body.bones.push_back(placed(mesh, Side::midline, frame, body.skeleton));
     }
   }
+  body.scapulae = rest_scapulae(body.skeleton, body.bones);
   if (options.joints) body.between = join_bones(body.bones, body.joined);
   return body;
 }

@@ -8,6 +8,7 @@
 #include "body/joints/join_bones.h"
 #include "body/piece.h"
 #include "body/placed_bone.h"
+#include "body/scapulae.h"
 #include "body/skeleton.h"
 
 namespace fabrica::body {
@@ -27,6 +28,7 @@ struct Body {
   Skeleton skeleton;
   Resolution resolution;
   std::vector<PlacedBone> bones;  // head to foot; of pairs right before left
+  ScapulaRest scapulae;           // how far shoulder blades turned to lie on the ribs
   BetweenBones between;
   JoinReport joined;  // what was moved and made between the bones
 };

@@ -153,6 +153,15 @@ void bone_rows(Rows& rows, const Body& body, Resolution resolution) {
            error <= limit);
 }
 
+void scapula_row(Rows& rows, const Body& body) {
+  const ScapulaRest& rest = body.scapulae;
+  rows.add("shoulder blades under the hull of the ribs, after they turned to lie on it",
+           fmt::format("{:.1f} mm; {:.1f} mm before, turned {:.1f} degrees, shoulder joint moved "
+                       "{:.1f} mm",
+                       rest.left, rest.depth, rest.turn, rest.arm),
+           "at most 0.3 mm", rest.left <= 0.3);
+}
+
 // how the bones hang together: only where they were joined
 void joint_rows(Rows& rows, const Body& body) {
   if (body.between.pieces.empty()) return;
@@ -252,6 +261,7 @@ std::vector<Measure> measure_body(const Body& body, const AssembledBody& assembl
     rows.add("nodes of ties that find no surface", fmt::format("{}", outside.untied_nodes), "0",
              outside.untied_nodes == 0);
   }
+  scapula_row(rows, body);
   joint_rows(rows, body);
   topology_rows(rows, body, model, check);
   rows.add("time to make the body, one core", fmt::format("{:.1f} s", outside.seconds),

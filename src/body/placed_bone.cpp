@@ -4,7 +4,16 @@
 
 #include <cctype>
 
+#include "body/skeleton.h"
+
 namespace fabrica::body {
+
+void place(PlacedBone& bone, const Skeleton& skeleton) {
+  bone.placement = skeleton.bone(bone.mesh.name, bone.frame, bone.side);
+  bone.nodes.clear();
+  bone.nodes.reserve(bone.mesh.nodes.size());
+  for (const Point& p : bone.mesh.nodes) bone.nodes.push_back(bone.placement(p));
+}
 
 const char* name_of(Region region) {
   static const char* const names[] = {"",        "head",   "neck", "thorax",

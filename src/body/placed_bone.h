@@ -8,6 +8,8 @@
 
 namespace fabrica::body {
 
+class Skeleton;
+
 enum class Region { head = 1, neck, thorax, abdomen, pelvis, arm, leg };
 
 struct PlacedBone {
@@ -18,6 +20,9 @@ struct PlacedBone {
   Placement placement;       // of this bone: the ribs' own, see skeleton.h
   std::vector<Point> nodes;  // [mm] global: placement(mesh.nodes[i])
 };
+
+// puts a bone where the skeleton has its frame
+void place(PlacedBone& bone, const Skeleton& skeleton);
 
 // "head", "neck", "thorax", "abdomen", "pelvis", "arm", "leg"
 const char* name_of(Region region);

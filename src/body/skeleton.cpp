@@ -152,6 +152,18 @@ Point Skeleton::joint_centre(const std::string& joint, Side side) const {
   return at->second;
 }
 
+void Skeleton::carry(const std::string& name, Side side, const Placement& motion) {
+  for (const Joint& joint : joint_tree()) {
+    if (joint.child == name) {
+      Placement& place = frames_.at({name, side});
+      place = {motion.R * place.R, motion(place.t)};
+      centres_.at({joint.name, side}) = motion(centres_.at({joint.name, side}));
+    } else if (joint.parent == name) {
+      carry(joint.child, side, motion);
+    }
+  }
+}
+
 Point Skeleton::carried(const std::string& name, Side side, const Point& standing) const {
   const Side key = has_frame(name, side) ? side : Side::midline;
   return frame(name, key)(

@@ -34,6 +34,8 @@ class Skeleton {
   // placement of a bone whose carrier is `frame`; that of ribs and cartilages follows vertebra and
   // sternum
   Placement bone(const std::string& bone, const std::string& frame, Side side) const;
+  // moves a frame of a side, its joint and all that hangs on it
+  void carry(const std::string& frame, Side side, const Placement& motion);
   // where a point of the standing man of the tables [mm, global] is, carried and scaled with a
   // frame of a side or, where the frame has none, of the midline
   Point carried(const std::string& frame, Side side, const Point& standing) const;
