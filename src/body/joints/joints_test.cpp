@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -147,6 +148,27 @@ TEST_CASE("a phalanx is moved along its ray") {
   const Point moved = bones[1].placement.t;
   CHECK(norm(moved) > 0.3);
   CHECK(norm(cross(moved, line)) < 1e-6 * norm(moved) * norm(line));
+}
+
+// The end of a cartilage stands 4 mm deep in that of its rib and 1 mm inside of a side, so that
+// most of its nodes are nearer to a side than to the end: the ends part along their common axis and
+// do not wrap one another.
+TEST_CASE("ends that are grown together part along their axis") {
+  std::vector<PlacedBone> bones{block("rib3", {0, 0, 0}, 12, 4),
+                                block("costal_cartilage3", {8, 1, 3}, 6, 2)};
+  const std::vector<Point> rib = bones[0].nodes, cartilage = bones[1].nodes;
+  const ClearanceReport report = clear_bones(bones);
+  CHECK(report.left.empty());
+  double sideways = 0, lengthwise = 0;
+  for (const auto& [now, before] :
+       {std::pair{&bones[0].nodes, &rib}, {&bones[1].nodes, &cartilage}})
+    for (std::size_t n = 0; n < now->size(); ++n) {
+      const Point u = (*now)[n] - (*before)[n];
+      sideways = std::max({sideways, std::abs(u.y), std::abs(u.z)});
+      lengthwise = std::max(lengthwise, std::abs(u.x));
+    }
+  CHECK(lengthwise > 1.5);
+  CHECK(sideways < 1);
 }
 
 // A cube of 27 bricks of 4 mm: an inner node of its upper face goes aside by 2 mm, so that two

@@ -88,10 +88,55 @@ void Surfaces::collect(const NearPair& pair, double margin, double reach,
   }
 }
 
+// [mm] how far the overlapping nodes have to go along `axis`, those of b against it; at most reach
+double Surfaces::way_out(const NearPair& pair, const std::vector<Touch>& overlapping,
+                         const Point& axis, double reach) const {
+  double way = 0;
+  for (const Touch& t : overlapping) {
+    const Point& p = bones_[std::size_t(t.a)].nodes[std::size_t(t.node)];
+    const SurfacePoint exit = (*this)[t.b].hit(p, (t.a == pair.a ? 1.0 : -1.0) * axis, reach);
+    way = std::max(way, exit.quad < 0 ? reach : exit.distance);
+  }
+  return way;
+}
+
+// Ends that are grown together part along one axis, the one with the shortest way among the normals
+// by which they overlap. What leaves the other bone by its side or its far face would wrap the one
+// around the other: its depth counts along the axis.
+void Surfaces::part_along_axis(const NearPair& pair, double reach, std::vector<Touch>& list) const {
+  constexpr double along = 0.5;        // cosine
+  constexpr std::size_t choices = 16;  // normals that are tried
+  std::vector<Touch> overlapping;
+  for (const Touch& t : list)
+    if (t.distance < 0) overlapping.push_back(t);
+  Point axis{0, 0, 0};
+  double least = 1e30;
+  const std::size_t stride = std::max<std::size_t>(overlapping.size() / choices, 1);
+  for (std::size_t i = 0; i < overlapping.size(); i += stride) {
+    const Point n = (overlapping[i].a == pair.a ? 1.0 : -1.0) * overlapping[i].normal;
+    const double way = way_out(pair, overlapping, n, 2 * reach);
+    if (way < least) least = way, axis = n;
+  }
+  std::erase_if(list, [&](Touch& t) {
+    const Point out = (t.a == pair.a ? 1.0 : -1.0) * axis;
+    if (dot(t.normal, out) > along || overlapping.empty()) return false;
+    if (t.distance >= 0) return true;
+    const PlacedBone& other = bones_[std::size_t(t.b)];
+    const Point& p = bones_[std::size_t(t.a)].nodes[std::size_t(t.node)];
+    const SurfacePoint exit = (*this)[t.b].hit(p, out, reach);
+    if (exit.quad < 0) return true;
+    t.quad = other.mesh.surface[std::size_t(exit.quad)];
+    t.weight = weights(other.nodes, t.quad, exit.point);
+    t.normal = out, t.distance = -exit.distance;
+    return false;
+  });
+}
+
 std::vector<Touch> Surfaces::touches(const NearPair& pair, double margin, double reach) const {
   std::vector<Touch> list;
   collect(pair, margin, reach, list);
   collect({pair.b, pair.a, pair.gap, pair.tied}, margin, reach, list);
+  if (pair.tied) part_along_axis(pair, reach, list);
   return list;
 }
 

@@ -40,6 +40,9 @@ class Surfaces {
 
  private:
   void collect(const NearPair& pair, double margin, double reach, std::vector<Touch>& list) const;
+  double way_out(const NearPair& pair, const std::vector<Touch>& overlapping, const Point& axis,
+                 double reach) const;
+  void part_along_axis(const NearPair& pair, double reach, std::vector<Touch>& list) const;
   const std::vector<PlacedBone>& bones_;
   std::vector<std::unique_ptr<BoneSurface>> surfaces_;
 };
