@@ -8,6 +8,10 @@ edges of the polygon, bricks inside. With the 6 x 6 flexibility of the free leng
     A^T c A ds,   c = diag(1/EA, 1/GA', 1/GA', 1/GJ) and the inverse of the bending stiffness,   A: section forces of unit loads,
 
 both pots rigid, a unit shortening along x, pivots free about z: five equations for Fx, Fz, Mx, My and the turn of the posterior pot.
+
+Then the moment [N m] in the plane at which the outermost fibre of each section reaches the strain at fracture, by the stress of the coupons
+at the rate of their test (cortex alone, plane sections, no axial force): mean, least, greatest over the free length; and the depth of the
+sections in the plane.
 """
 import math
 import pathlib
@@ -76,12 +80,27 @@ class Section:
             first = [first[k] + q * (a[k] + b[k]) / 6 for k in (0, 1)]
             for n, (i, j) in enumerate(((0, 0), (1, 1), (0, 1))):
                 second[n] += q / 24 * (2 * a[i] * a[j] + 2 * b[i] * b[j] + a[i] * b[j] + b[i] * a[j])
+        self.fibres = [(a[0] + (i + 0.5) / 4 * (b[0] - a[0]) + (j + 0.5) / 4 * t * (a[1] - b[1]) / math.dist(a, b), t * math.dist(a, b) / 16)
+                       for a, b, t in edges for i in range(4) for j in range(4)]  # place in the plane, area
+        self.ends = min(a[0] for a, _, _ in edges), max(a[0] for a, _, _ in edges)
         self.EA = E * self.cortex + core * self.area
         g = [f / self.EA for f in first]
         self.centre = add(add(middle, self.y, g[0]), self.z, g[1])
         self.bending = [second[n] - self.EA * g[i] * g[j] for n, (i, j) in enumerate(((0, 0), (1, 1), (0, 1)))]
         self.GJ = E / 2.6 * 4 * self.area ** 2 / around
         self.GA = E / 2.6 * 0.5 * self.cortex
+
+    def strength(self, stress, strain):
+        """moment in the plane [kN mm] at which the outermost fibre reaches `strain`"""
+        low, high = self.ends
+        for _ in range(50):  # of the neutral axis
+            axis = 0.5 * (low + high)
+            turn = strain / max(self.ends[1] - axis, axis - self.ends[0])
+            if sum(stress(turn * (y - axis)) * area for y, area in self.fibres) > 0:
+                low = axis
+            else:
+                high = axis
+        return sum(stress(turn * (y - axis)) * area * (y - axis) for y, area in self.fibres)
 
     def compliance(self, force, moment):
         """strain and turn per length, in space, from force and moment on the section"""
@@ -163,16 +182,25 @@ def read(path):
     return nodes, bricks, shells, pots
 
 
-def modulus(row):
-    """[GPa] of a row of data/materials.csv"""
+def field(row, name):
+    """of a row of data/materials.csv"""
     table = pathlib.Path(__file__).parents[3] / "data" / "materials.csv"
     line = next(l for l in table.read_text(encoding="utf-8").splitlines() if l.startswith(row + ","))
-    return float(re.search(r"\be=([0-9.]+)", line).group(1))
+    return float(re.search(rf"\b{name}=([0-9.]+)", line).group(1))
+
+
+def coupon_law():
+    """stress [GPa] over strain of the cortex of ribs at 0.5 1/s"""
+    E, yielded, at, plastic, C, P = (field("rib_cortical", f) for f in ("e", "es1", "es2", "eps2", "c", "p"))
+    rate = 1 + (0.0005 / C) ** (1 / P)
+    slope, yielded = rate * (at - yielded) / plastic, rate * yielded
+    return lambda e: math.copysign(min(E * abs(e), (abs(e) + yielded / slope) / (1 / E + 1 / slope)), e)
 
 
 def main():
     deck = read(sys.argv[1])
-    E, core = modulus("rib_cortical"), modulus("rib_trabecular")
+    E, core = field("rib_cortical", "e"), field("rib_trabecular", "e")
+    stress = coupon_law()
     for number in range(len({s[1] for s, _ in deck[2]})):
         rib = Rib(deck, number, E, core)
         middle = [s for s, _, _ in rib.free]
@@ -180,6 +208,9 @@ def main():
         print(f"rib {number + 1} of the deck: {1000 * rib.stiffness():.2f} N/mm, pivots 5 mm higher "
               f"{1000 * rib.stiffness(5):.2f}, lower {1000 * rib.stiffness(-5):.2f}; area {average(lambda s: s.area):.0f} mm2, "
               f"cortex {average(lambda s: s.cortex):.1f} mm2, E I in the plane {average(lambda s: s.bending[0]):.0f} kN mm2")
+        moment = [s.strength(stress, 0.027) for s in middle]
+        depth = [s.ends[1] - s.ends[0] for s in middle]
+        print(f"  breaks at {sum(moment) / len(moment):.1f} ({min(moment):.1f} to {max(moment):.1f}) N m, {min(depth):.1f} to {max(depth):.1f} mm deep")
 
 
 if __name__ == "__main__":
