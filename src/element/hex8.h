@@ -89,7 +89,7 @@ struct Hex8 {
     const L q = point.alive * bulk_viscosity(p, density, sound, rate, size, l);
     totals.time_step = stable_step(p, sound, rate, size);
     const L mid_volume = g.volume * (L(1.0) - L(0.5) * dt * rate);
-    totals.internal = mid_volume * (ddot(r.mean_stress, r.strain) - q * dt * rate);
+    totals.internal = g.volume * work_of_step(r, gradient, dt) - mid_volume * q * dt * rate;
     totals.volume = g.volume;
     Sym3<L> stress = plus_sphere(r.stress, -q);
     if (p.stiffness_damping != 0) {

@@ -45,6 +45,7 @@ struct SolidPoint {
 
 template <class L>
 struct PointResult {
+  Sym3<L> old_stress;   // as it was stored, not turned
   Sym3<L> mean_stress;  // average of the rotated old and the new stress, for the energy
   Sym3<L> stress;
   Sym3<L> strain;  // D dt
@@ -69,7 +70,8 @@ FABRICA_FN PointResult<L> advance_point(const M& material, const Mat3<L>& gradie
   PointResult<L> r;
   r.strain = dt * sym(gradient);
   const Vec3<L> w = spin_increment(gradient, dt);
-  Sym3<L> old = turn(s.template get<Sym3<L>>(P::stress), w);
+  r.old_stress = s.template get<Sym3<L>>(P::stress);
+  Sym3<L> old = turn(r.old_stress, w);
   MaterialState state = s.template get<MaterialState>(P::material);
   if constexpr (M::rotated > 0) {
     Sym3<L>* tensors = reinterpret_cast<Sym3<L>*>(&state);
@@ -90,6 +92,22 @@ FABRICA_FN PointResult<L> advance_point(const M& material, const Mat3<L>& gradie
   s.put(P::stress, r.stress);
   s.put(P::material, state);
   return r;
+}
+
+// Work that the stresses of both ends of a step do in it, per volume at its end, each in its own
+// geometry:
+//   2 w V = V s : A + V_old s_old : A_old,   A = dt L,
+//   V_old A_old = V det(I - A) A (I - A)^-1 = V ((1 - tr A) A + A A + det(A) I),
+//   A A = 2 dt (L_mid - L)                                                                     (5)
+// This is dt/2 (f(n) + f(n+1)) . v of forces that follow one gradient, to rounding.
+template <class L>
+FABRICA_FN L work_of_step(const PointResult<L>& r, const Mat3<L>& gradient, const L& dt) {
+  Mat3<L> a;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) a.a[i][j] = dt * gradient.a[i][j];
+  const Sym3<L> e = sym(a);
+  const Sym3<L> before = plus_sphere(L(2.0) * r.strain - (L(1.0) + trace(e)) * e, det(a));
+  return L(0.5) * (ddot(r.stress, e) + ddot(r.old_stress, before));
 }
 
 // The point with the elastic moduli filled in.
