@@ -97,7 +97,7 @@ void ContactPass::search(const State& state) {
   std::vector<BoundingBox> boxes(reference_.segments.size());
   for (std::size_t b = 0; b < boxes.size(); ++b) {
     const ContactSegment& s = reference_.segments[b];
-    const double margin = std::max(s.half_thickness + largest_half_, s.limit) + outer_skin_;
+    const double margin = std::max(s.half_thickness + largest_half_, s.reach) + outer_skin_;
     Vec3d low = state.nodes[s.node[0]].x, high = low;
     for (int n : s.node) {
       const Vec3d& x = state.nodes[n].x;

@@ -76,9 +76,20 @@ ContactPass::ContactPass(const Model& model, const Contact& contact, int contact
     std::nth_element(sizes.begin(), sizes.begin() + std::ptrdiff_t(sizes.size() / 2), sizes.end());
     size_ = sizes[sizes.size() / 2];
   }
+  see_neighbours();
   outer_skin_ = 0.3 * size_, inner_skin_ = 0.04 * size_;
   slots_.resize(max_slots * tracked_.nodes.size());
   if (contact.soft == 2) find_segments_around();
+}
+
+// Whether a node beyond an edge is behind it is for both faces to say: a thin one must be seen from
+// where the other could be penetrated.
+void ContactPass::see_neighbours() {
+  std::vector<double> of_node(start_.size(), 0);
+  for (const ContactSegment& s : reference_.segments)
+    for (int n : s.node) of_node[n] = std::max(of_node[n], s.limit);
+  for (ContactSegment& s : reference_.segments)
+    for (int n : s.node) s.reach = std::max(s.reach, of_node[n]);
 }
 
 void ContactPass::find_segments_around() {
@@ -95,7 +106,7 @@ void ContactPass::find_segments_around() {
 
 double ContactPass::reach(int tracked, int segment) const {
   const ContactSegment& s = reference_.segments[segment];
-  return std::max(tracked_.nodes[tracked].half_thickness + s.half_thickness, s.limit);
+  return std::max(tracked_.nodes[tracked].half_thickness + s.half_thickness, s.reach);
 }
 
 // a node deeper than this is let go

@@ -124,6 +124,7 @@ class ContactPass {
   bool shares_node(int segment_a, int segment_b) const;
   void corners(const State& state, const ContactSegment& s, Vec3d* X) const;
   SurfacePoint project(const State& state, int segment, const Vec3d& x, double r, double s) const;
+  void see_neighbours();
   double reach(int tracked, int segment) const;
   double release_depth(int tracked, int segment) const;
   double own_share(const State& state, int tracked, const Vec3d& direction) const;

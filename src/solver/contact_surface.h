@@ -25,6 +25,7 @@ struct ContactSegment {
   double half_thickness = 0;
   double stiffness = 0;  // with SLSFAC and SFS/SFM
   double limit = 0;      // deeper than this behind the surface: not in contact
+  double reach = 0;      // the largest limit of it and of those that share a node with it
   double area = 0;
   double mass_per_area = 0;  // of the shell, of half the solid; 0: not known
   bool triangle = false;

@@ -141,6 +141,27 @@ TEST_CASE("penetration at the start is not pushed back, shells keep their thickn
   CHECK(up > 0);
 }
 
+// A slab of 1 x 1 x 0.1: nodes may be 0.05 behind its top, 0.5 behind its sides. One stands 0.3
+// above the top and 0.05 inside of a side: it touches nothing.
+TEST_CASE("a node above a thin slab is not behind the slab's side") {
+  Rig rig;
+  const int a = rig.add_part(), b = rig.add_part();
+  rig.add_brick(a, {0, 0, 0}, {1, 1, 0.1}, 1);
+  const auto above = rig.add_brick(b, {0.05, 0.3, 0.4}, {0.2, 0.2, 0.2}, 1);
+  rig.add_contact(ContactKind::automatic_surface_to_surface, {a}, {b});
+  rig.start(0.01);
+  Team team(1);
+  rig.contacts->forces(rig.model, rig.state, team);
+  CHECK(rig.contacts->initial_report().penetrating_nodes == 0);
+  // it touches the top when it comes down
+  rig.state.dt = 0.01;
+  for (int n : above) rig.state.nodes[n].x.z -= 0.31, rig.state.nodes[n].v.z = -31;
+  rig.contacts->forces(rig.model, rig.state, team);
+  double up = 0;
+  for (int n : above) up += rig.state.interaction.take(n).z;
+  CHECK(up > 0);
+}
+
 TEST_CASE("no pair within reach is missed while particles move") {
   Rig rig;
   const int a = rig.add_part(), b = rig.add_part();
