@@ -101,7 +101,7 @@ void run_rows(const Plan& plan, const StudyOptions& o, const std::string& out) {
 
 // the numbers that are kept of a row; what cannot be had is not a number
 void measure_row(const Plan& plan, const std::string& folder, StudyRow& row) {
-  Channels channels(folder + "/result/csv", plan.base.folder);
+  Channels channels(folder + "/result/csv", plan.base.folder, plan.base.time_unit);
   for (const OutputSpec& output : plan.outputs) {
     row.outputs.push_back(std::numeric_limits<double>::quiet_NaN());
     if (row.status != 0) continue;

@@ -26,8 +26,7 @@ SignalSpec read_signal(Fields f) {
   s.start_at = f.maybe_number("start_at");
   if (s.start_at && *s.start_at <= 0)
     f.fail("start_at", "is not above 0", "Give the magnitude from which contact counts as made");
-  s.filter = f.text("filter", "");
-  if (!s.filter.empty()) f.one_of("filter", s.filter, {"CFC60", "CFC180", "CFC600", "CFC1000"});
+  s.filter = read_filter(f);
   s.reference = f.text("reference", "");
   s.reference_x = f.text("reference_x", "");
   if (const auto corridor = f.texts("corridor"); !corridor.empty()) {
@@ -54,7 +53,7 @@ CheckSpec read_check(Fields f, bool limit) {
   c.name = f.text("name");
   c.model = f.text("model");
   const bool single = c.model.starts_with("rating:") || c.model.starts_with("fit:");
-  for (const char* key : {"window", "statistic"})
+  for (const char* key : {"filter", "window", "statistic"})
     if (single && f.has(key)) f.fail(key, "is given for a single number", "Remove it");
   read_statistic(f, c);
   if (limit) {
@@ -100,8 +99,7 @@ void read_what_runs(Fields& f, Case& c) {
     f.fail("loads", "belongs to a generated body", "Give body, or include the loads in the deck");
   c.end_time = f.number("end_time", 0);
   if (c.end_time < 0) f.fail("end_time", "is negative", "Give the time at which the run ends");
-  c.time_unit = f.text("time_unit", "ms");
-  f.one_of("time_unit", c.time_unit, {"ms", "s"});
+  c.time_unit = read_time_unit(f);
   c.allow_unsupported = f.flag("allow_unsupported", false);
   c.slow = f.flag("slow", false);
   c.parameters = literals(f.table("parameters"));

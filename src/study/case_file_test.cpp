@@ -91,6 +91,7 @@ TEST_CASE("every fault of a case is named with file, line, key and remedy") {
   CHECK(says(
       error_of(head + check + "[[signal]]\nname = \"s\"\nmodel = \"a:b\"\nfilter = \"CFC100\"\n"),
       {"signal[1].filter", "CFC180"}));
+  CHECK(says(error_of(head + check + "filter = \"CFC100\"\n"), {"check[1].filter", "CFC180"}));
   CHECK(says(error_of(head + "body = { sex = \"male\" }\n" + check), {"body", "beside a deck"}));
   CHECK(says(error_of(head + check + "[[limit]]\nname = \"l\"\nmodel = \"a:b\"\n"),
              {"limit[1]", "without a bound"}));

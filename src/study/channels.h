@@ -22,9 +22,14 @@ struct Curve {
 
 class Channels {
  public:
-  // `histories` holds one csv file per database; `folder` the files that a case names
-  Channels(std::string histories, std::string folder)
-      : histories_(std::move(histories)), folder_(std::move(folder)) {}
+  // `histories` holds one csv file per database, over time in `time_unit` (ms, s); `folder` the
+  // files that a case names
+  Channels(std::string histories, std::string folder, std::string time_unit)
+      : histories_(std::move(histories)),
+        folder_(std::move(folder)),
+        time_unit_(std::move(time_unit)) {}
+
+  const std::string& time_unit() const { return time_unit_; }
 
   // Values of "database:column" or "file.csv:column", or of such joined by " + ", " - " and " / "
   // (which binds more). Throws StudyError naming what is missing and what there is instead.
@@ -45,7 +50,7 @@ class Channels {
   const SourcedTable& table_of(const std::string& text);
   std::string path_of(const std::string& text) const;
 
-  std::string histories_, folder_;
+  std::string histories_, folder_, time_unit_;
   std::map<std::string, SourcedTable> tables_;
 };
 

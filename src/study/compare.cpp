@@ -41,7 +41,7 @@ Curve finite(std::vector<double> x, std::vector<double> y) {
 }
 
 Curve model_curve(const SignalSpec& s, Channels& channels) {
-  Curve c = samples(s.model, s.x, s.window, channels);
+  Curve c = samples(s.model, s.x, s.filter, s.window, channels);
   scale(c.y, s.scale);
   scale(c.x, s.x_scale);
   if (s.start_at) {
@@ -157,7 +157,6 @@ SignalResult compare_signal(const SignalSpec& s, Channels& channels, const Case&
                : s.x.find(':') == std::string::npos ? s.x
                                                     : column_of(s.x);
   r.model = model_curve(s, channels);
-  if (!s.filter.empty()) r.model.y = filtered(s.filter, r.model, {s.unit, c.time_unit});
   const std::size_t peak = index_of_peak(r.model.y);
   r.peak = r.model.y[peak], r.peak_at = r.model.x[peak];
   if (!s.paper.empty()) r.paper_total = published_rating(s.paper, c.file, s.line);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "study/error.h"
+#include "study/rate_curve.h"
 #include "study/toml_fields.h"
 
 namespace fabrica::study {
@@ -33,7 +34,7 @@ bool holds(const CheckSpec& c, double value) {
 
 // The energy of a check, sampled as its load.
 std::vector<double> energy_beside(const CheckSpec& c, Channels& channels) {
-  const auto [x, y] = samples(c.energy, c.range ? c.over : "", c.window, channels);
+  const auto [x, y] = samples(c.energy, c.range ? c.over : "", "", c.window, channels);
   return c.range ? within(*c.range, x, y) : y;
 }
 
@@ -64,7 +65,7 @@ std::vector<double> within(const std::pair<double, double>& range, const std::ve
   return kept;
 }
 
-Curve samples(const std::string& model, const std::string& over,
+Curve samples(const std::string& model, const std::string& over, const std::string& filter,
               const std::optional<std::pair<double, double>>& window, Channels& channels) {
   std::vector<double> y = channels.column(model);
   std::vector<double> x = over.empty() ? channels.abscissa(model) : channels.column(over);
@@ -74,8 +75,9 @@ Curve samples(const std::string& model, const std::string& over,
   for (const double v : y)
     if (!std::isfinite(v))
       throw StudyError("'" + model + "' holds a value that is not a number. Look at the run");
+  const std::vector<double> times = channels.abscissa(model);
+  if (!filter.empty()) y = filtered(filter, {times, std::move(y)}, channels.time_unit());
   if (window) {
-    const std::vector<double> times = channels.abscissa(model);
     x = within(*window, times, x), y = within(*window, times, y);
   }
   return {std::move(x), std::move(y)};
@@ -99,7 +101,20 @@ const std::vector<std::string>& statistic_names() {
   return names;
 }
 
+std::string read_filter(Fields& f) {
+  const std::string filter = f.text("filter", "");
+  if (!filter.empty()) f.one_of("filter", filter, filter_names());
+  return filter;
+}
+
+std::string read_time_unit(Fields& f) {
+  const std::string unit = f.text("time_unit", "ms");
+  f.one_of("time_unit", unit, {"ms", "s"});
+  return unit;
+}
+
 void read_statistic(Fields& f, CheckSpec& c) {
+  c.filter = read_filter(f);
   c.over = f.text("over", "");
   c.window = f.interval("window");
   c.range = f.interval("range");
@@ -129,7 +144,7 @@ double failure_load(const std::vector<double>& load, const std::vector<double>& 
 
 double statistic(const CheckSpec& c, Channels& channels) {
   const bool mean = c.statistic == "mean";
-  auto [x, y] = samples(c.model, mean || c.range ? c.over : "", c.window, channels);
+  auto [x, y] = samples(c.model, mean || c.range ? c.over : "", c.filter, c.window, channels);
   if (mean) {
     const auto [low, high] = std::minmax_element(x.begin(), x.end());
     return c.range ? mean_over(x, y, c.range->first, c.range->second)

@@ -26,9 +26,10 @@ struct CheckResult {
 std::vector<double> within(const std::pair<double, double>& range, const std::vector<double>& x,
                            const std::vector<double>& y);
 
-// A column over another one or, where `over` is empty, over time, within a window of time. Throws
-// StudyError where they differ in length, y is not a number or the window is empty.
-Curve samples(const std::string& model, const std::string& over,
+// A column over another one or, where `over` is empty, over time; behind a filter, if one is named,
+// and then within a window of time. Throws StudyError where they differ in length, y is not a
+// number or the window is empty.
+Curve samples(const std::string& model, const std::string& over, const std::string& filter,
               const std::optional<std::pair<double, double>>& window, Channels& channels);
 
 // Integral of y dx over the length of the path of x within [low, high], by the trapezoid rule.
@@ -44,7 +45,13 @@ double first_reaching(const std::vector<double>& x, const std::vector<double>& y
 // magnitude, with its sign), magnitude (without) and failure (see failure_load).
 const std::vector<std::string>& statistic_names();
 
-// Reads what a check asks for of its column: over, window, range, statistic, energy.
+// Reads "filter": one of filter_names() (rate_curve.h), or nothing.
+std::string read_filter(Fields& f);
+
+// Reads "time_unit" of a case or a plan: ms (default) or s.
+std::string read_time_unit(Fields& f);
+
+// Reads what a check asks for of its column: filter, over, window, range, statistic, energy.
 void read_statistic(Fields& f, CheckSpec& c);
 
 // The load under which something broke: the largest magnitude up to the moment at which the energy

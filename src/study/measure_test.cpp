@@ -39,7 +39,7 @@ double value(Channels& channels, const std::string& statistic_name, const std::s
 
 TEST_CASE("statistics of a column are those of its numbers") {
   const Result r;
-  Channels channels(r.path.string(), r.path.string());
+  Channels channels(r.path.string(), r.path.string(), "ms");
   CHECK(value(channels, "last") == 4);
   CHECK(value(channels, "max") == 4);
   CHECK(value(channels, "min") == -6);
@@ -70,7 +70,7 @@ TEST_CASE("the load at failure is that under which the stored energy was greates
 TEST_CASE("failure reads load and energy in the same part of the run") {
   const Result r;
   std::ofstream(r.path / "e.csv") << "time,u:7\n0,0\n1,4\n2,3\n3,9\n";
-  Channels channels(r.path.string(), r.path.string());
+  Channels channels(r.path.string(), r.path.string(), "ms");
   CheckSpec c;
   c.model = "a:f:1", c.statistic = "failure", c.energy = "e:u:7";
   CHECK(statistic(c, channels) == 2);
@@ -91,7 +91,7 @@ TEST_CASE("a curve counts from where it first reaches a level, whatever its sign
 // f is 0, 2, -6, 4 at the times 0 to 3
 TEST_CASE("a range bounds every statistic") {
   const Result r;
-  Channels channels(r.path.string(), r.path.string());
+  Channels channels(r.path.string(), r.path.string(), "ms");
   const std::pair early{0.0, 1.5}, middle{1.0, 2.0};
   CHECK(value(channels, "min", "", early) == 0);
   CHECK(value(channels, "last", "", early) == 2);
@@ -107,7 +107,7 @@ TEST_CASE("a range bounds every statistic") {
 // f is 0, 2, -6, 4 and u 0, 10, 20, 15 at the times 0 to 3
 TEST_CASE("a window takes a part of the run's time, a range a part of what is in it") {
   const Result r;
-  Channels channels(r.path.string(), r.path.string());
+  Channels channels(r.path.string(), r.path.string(), "ms");
   CheckSpec c;
   c.model = "a:f:1", c.statistic = "max", c.window = {1.5, 3};
   CHECK(statistic(c, channels) == 4);
@@ -136,7 +136,7 @@ TEST_CASE("a window takes a part of the run's time, a range a part of what is in
 
 TEST_CASE("a quotient, a sum, a unit, and the head of a file are found") {
   const Result r;
-  Channels channels(r.path.string(), r.path.string());
+  Channels channels(r.path.string(), r.path.string(), "ms");
   CHECK(channels.column("a:f:1 / a:u") == std::vector<double>{0, 0.2, -0.3, 4.0 / 15});
   CHECK(channels.column("a:f:1 + a:u") == std::vector<double>{0, 12, 14, 19});
   // from left to right, quotients first
@@ -150,7 +150,7 @@ TEST_CASE("a quotient, a sum, a unit, and the head of a file are found") {
 
 TEST_CASE("an abscissa is called by its column or as the case names it") {
   const Result r;
-  Channels channels(r.path.string(), r.path.string());
+  Channels channels(r.path.string(), r.path.string(), "ms");
   SignalSpec s;
   s.name = "force", s.model = "a:f:1", s.x = "a:u";
   Case c;
@@ -159,10 +159,36 @@ TEST_CASE("an abscissa is called by its column or as the case names it") {
   CHECK(compare_signal(s, channels, c).x_name == "travel of the ram");
 }
 
+TEST_CASE("a check reads its column behind a filter of SAE J211, and then its window") {
+  const Result r;
+  {
+    std::ofstream out(r.path / "h.csv");
+    out << "time,f\n";  // a half sine of 100 over 50 ms with a ripple of 3 kHz on it
+    for (int i = 0; i <= 1000; ++i) {
+      const double t = 0.05 * i, pi = std::acos(-1.0);
+      out << t << ',' << 100 * std::sin(pi * t / 50) + 40 * std::sin(2 * pi * 3 * t) << '\n';
+    }
+  }
+  Channels channels(r.path.string(), r.path.string(), "ms");
+  CheckSpec c;
+  c.model = "h:f", c.statistic = "max";
+  CHECK(statistic(c, channels) == doctest::Approx(140).epsilon(0.01));
+  c.filter = "CFC180";
+  CHECK(statistic(c, channels) == doctest::Approx(100).epsilon(0.01));
+  // cut before it is filtered, the curve would bend at the edges of the window
+  c.window = {5, 10};
+  CHECK(statistic(c, channels) ==
+        doctest::Approx(100 * std::sin(std::acos(-1.0) / 5)).epsilon(0.01));
+  // the same rows in seconds are sampled a thousand times more slowly
+  Channels seconds(r.path.string(), r.path.string(), "s");
+  CHECK_THROWS_WITH(statistic(c, seconds),
+                    doctest::Contains("needs 1800 samples a second, the signal has 20"));
+}
+
 TEST_CASE("a reference over another unit of time than the model's is not rated") {
   const Result r;
   std::ofstream(r.path / "curve.csv") << "time [ms],g [kN]\n0,0\n1,2\n2,-6\n3,4\n";
-  Channels channels(r.path.string(), r.path.string());
+  Channels channels(r.path.string(), r.path.string(), "ms");
   SignalSpec s;
   s.name = "force", s.model = "a:f:1", s.unit = "kN", s.reference = "curve.csv:g";
   s.rating = {"cora"};
@@ -176,7 +202,7 @@ TEST_CASE("a reference over another unit of time than the model's is not rated")
 
 TEST_CASE("what is not in a result is named, and what there is instead") {
   const Result r;
-  Channels channels(r.path.string(), r.path.string());
+  Channels channels(r.path.string(), r.path.string(), "ms");
   CHECK_THROWS_WITH_AS(channels.column("a:z"), doctest::Contains("there are: time, f:1, u"),
                        StudyError);
   CHECK_THROWS_WITH_AS(channels.column("b:f"), doctest::Contains("no database b; it has: "),
@@ -187,7 +213,7 @@ TEST_CASE("what is not in a result is named, and what there is instead") {
 
 TEST_CASE("a check passes within its tolerance and fails beyond it") {
   const Result r;
-  Channels channels(r.path.string(), r.path.string());
+  Channels channels(r.path.string(), r.path.string(), "ms");
   CheckSpec c;
   c.name = "f", c.model = "a:f:1", c.statistic = "last", c.expected = 5, c.tolerance = 0.2;
   CHECK(evaluate(c, channels, nullptr).passed);

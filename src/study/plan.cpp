@@ -158,6 +158,7 @@ void read_base(Fields& f, Plan& plan, const std::string& folder,
   if (c.deck.empty() == c.body.empty())
     f.fail("deck", "one of deck and body is needed", "Give one of them");
   c.end_time = f.number("end_time", 0);
+  c.time_unit = read_time_unit(f);
   c.allow_unsupported = f.flag("allow_unsupported", false);
 }
 

@@ -80,9 +80,14 @@ std::string rating_word(const std::string& method, double total) {
   return method == "cora" ? cora_word(total) : iso18571_word(total);
 }
 
+const std::vector<std::string>& filter_names() {
+  static const std::vector<std::string> names{"CFC60", "CFC180", "CFC600", "CFC1000"};
+  return names;
+}
+
 std::vector<double> filtered(const std::string& filter, const Curve& curve,
-                             const RatedUnits& units) {
-  const Signal s = signal_of(curve, "model", units.unit, units.time_unit);
+                             const std::string& time_unit) {
+  const Signal s = signal_of(curve, "model", "", time_unit);
   // histories come at the multiples of an interval that the steps reach: nearly, not quite,
   // constant
   const double step = (curve.x.back() - curve.x.front()) / double(curve.x.size() - 1);

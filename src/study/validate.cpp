@@ -159,7 +159,7 @@ std::optional<double> cora_of_all(const std::vector<SignalResult>& signals) {
 
 void compare(Work& w) {
   PageExtras extras;
-  Channels channels(w.folder + "/result/csv", w.c.folder);
+  Channels channels(w.folder + "/result/csv", w.c.folder, w.c.time_unit);
   Outcome& o = w.outcome;
   o.state = State::passed;
   extras.readme = read_file(w.c.folder + "/readme.md");
