@@ -192,9 +192,12 @@ class Scene {
       for (const auto& l : piece.lines) line(nodes[std::size_t(l[0])], nodes[std::size_t(l[1])]);
     }
   }
+  // a body that one bone carries without a node of it, or what lies in such a body
   static bool on_one_bone(const Piece& piece) {
     return !piece.bone_a.empty() && piece.bone_a == piece.bone_b &&
-           (piece.material == "meniscus" || piece.name.ends_with("_meniscus.fibres"));
+           std::all_of(piece.nodes.begin(), piece.nodes.end(), [&](const body::PieceNode& n) {
+             return n.bone < 0 && n.piece == piece.nodes.front().piece;
+           });
   }
   bool connected_to_shown(const Piece& piece) const {
     if (on_one_bone(piece)) return true;

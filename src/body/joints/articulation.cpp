@@ -11,11 +11,13 @@ namespace {
 ArticulationKind kind_of(const Table& table, int row) {
   const std::string& kind = table.text(row, "kind");
   if (kind == "sliding") return ArticulationKind::sliding;
+  if (kind == "meniscal") return ArticulationKind::meniscal;
   if (kind == "facet") return ArticulationKind::facet;
   if (kind == "arch") return ArticulationKind::arch;
   if (kind == "joined") return ArticulationKind::joined;
   if (kind == "symphysis") return ArticulationKind::symphysis;
-  table.fail(row, "kind is \"" + kind + "\": one of sliding, facet, arch, joined, symphysis");
+  table.fail(row,
+             "kind is \"" + kind + "\": one of sliding, meniscal, facet, arch, joined, symphysis");
 }
 
 // a bone of one side, else of the midline; "_L" at the end of a name asks for the left one

@@ -8,7 +8,8 @@
 
 namespace fabrica::body {
 
-enum class ArticulationKind { sliding, facet, arch, joined, symphysis };
+// meniscal: sliding, with menisci between that the second bone carries
+enum class ArticulationKind { sliding, meniscal, facet, arch, joined, symphysis };
 
 struct Articulation {
   std::string name;  // of the row

@@ -142,10 +142,6 @@ std::vector<std::array<PieceNode, 4>> ArticulationMaker::layer(const Articulatio
     return faces;
   }
   const PlacedBone& here = bone(index);
-  const bool knee = here.mesh.name == "femur" && bone(other).mesh.name == "tibia";
-  const int tibia = knee                                                            ? other
-                    : bone(other).mesh.name == "femur" && here.mesh.name == "tibia" ? index
-                                                                                    : -1;
   std::map<int, Point> normals;
   for (int q : patch.quads) {
     const auto& s = here.mesh.surface[std::size_t(q)];
@@ -168,7 +164,9 @@ std::vector<std::array<PieceNode, 4>> ArticulationMaker::layer(const Articulatio
       crowded.insert(node);
       continue;
     }
-    const double meniscus = tibia < 0 ? 0 : meniscus_height(bone(tibia), p);
+    const double meniscus = joint.kind == ArticulationKind::meniscal
+                                ? meniscus_height(bone(joint.a), bone(joint.b), p)
+                                : 0;
     const double beside =
         meniscus > 0 ? std::max(room - 0.5 * meniscus, under_meniscus) : cartilage;
     const double thickness = std::clamp(std::min(room, beside), thinnest, cartilage);

@@ -57,4 +57,21 @@ Knee::Faces knee_faces(const std::vector<PlacedBone>& bones, int index, const Be
   return faces;
 }
 
+bool clear_of(const std::array<PieceNode, 4>& face, double shell,
+              const std::array<double, 4>& corner_shell,
+              const std::vector<std::array<PieceNode, 4>>& others) {
+  const auto places = [](const std::array<PieceNode, 4>& f) {
+    return std::array<Point, 4>{f[0].x, f[1].x, f[2].x, f[3].x};
+  };
+  const std::array<Point, 4> here = places(face);
+  return std::none_of(others.begin(), others.end(), [&](const auto& other) {
+    const std::array<Point, 4> there = places(other);
+    for (std::size_t i = 0; i < 4; ++i)
+      if (behind(here[i], there, corner_shell[i] + touching) ||
+          behind(there[i], here, shell + touching))
+        return true;
+    return false;
+  });
+}
+
 }  // namespace fabrica::body

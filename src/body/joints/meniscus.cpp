@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <optional>
 
+#include "body/joints/articulation.h"
 #include "body/joints/ligament_law.h"
 #include "body/joints/meniscus_mesh.h"
 #include "body/mesh/quality.h"
@@ -18,10 +20,13 @@ namespace {
 constexpr double gap = 0.1;             // [mm] left to the cartilage on either side
 constexpr double least_height = 0.3;    // [mm] of a column
 constexpr double least_jacobian = 0.3;  // of a brick
-constexpr double most_drawn = 0.6;      // of the width, by which the inner edge gives way
+constexpr double most_drawn = 0.8;      // of the width, by which the inner edge gives way
+constexpr double least_width = 0.4;     // of it: the rim gives way, too, to keep as much
 constexpr double steepest = 0.2;        // cosine of a face's normal to the tibia's axis
 constexpr double reach = 45;            // [mm] of rays along the tibia
 constexpr double rim_step = 3;          // [mm] deeper than the last place: beside the plateau
+constexpr double steepest_rim = 0.5;    // slope of the rim beside the plateau
+constexpr double under = 6;             // [mm] below a place the femur is looked for
 constexpr double fibre_modulus = 0.12;  // [GPa] 140 MPa along the sweep less 20 MPa of the bricks
 constexpr double friction = 0.02;
 
@@ -46,23 +51,12 @@ Grid grid_for(const PlacedBone& tibia, const MeniscusPlan& plan) {
           size < 4.5 ? 2 : 1};
 }
 
-// Does no corner of a face, with what contact keeps around it, stand behind one of the others, nor
-// a corner of those behind the face?
-bool clear_of(const std::array<PieceNode, 4>& face, double shell,
-              const std::array<double, 4>& corner_shell,
-              const std::vector<std::array<PieceNode, 4>>& others) {
-  const auto places = [](const std::array<PieceNode, 4>& f) {
-    return std::array<Point, 4>{f[0].x, f[1].x, f[2].x, f[3].x};
-  };
-  const std::array<Point, 4> here = places(face);
-  return std::none_of(others.begin(), others.end(), [&](const auto& other) {
-    const std::array<Point, 4> there = places(other);
-    for (std::size_t i = 0; i < 4; ++i)
-      if (behind(here[i], there, corner_shell[i] + touching) ||
-          behind(there[i], here, shell + touching))
-        return true;
-    return false;
-  });
+double distance(const PlanPoint& a, const PlanPoint& b) { return std::hypot(b.x - a.x, b.y - a.y); }
+
+// [deg] between the axes of both bones
+double flexion(const PlacedBone& femur, const PlacedBone& tibia) {
+  const Point z{0, 0, 1}, a = femur.placement.R * z, b = tibia.placement.R * z;
+  return std::atan2(norm(cross(a, b)), dot(a, b)) * 180 / std::numbers::pi;
 }
 
 class MeniscusMaker {
@@ -87,6 +81,13 @@ class MeniscusMaker {
   struct Column {
     PlanPoint place;
     double bottom = 0, top = 0, wanted = 0;  // [mm] along the tibia, its frame; height
+  };
+  // a place of the top (or bottom) face between four columns, with the warp of its two triangles
+  struct Sample {
+    std::array<double, 4> weight;  // of the columns
+    std::array<double, 4> slope;   // of the overlap over the height (or depth) of the columns
+    double most_warp;              // of the slope
+    double overlap;  // [mm] nearer to the cartilage than the gap; negative where there is room
   };
   Column& column(int i, int j) { return columns_[std::size_t(i * (grid_.across + 1) + j)]; }
   Point global(const PlanPoint& p, double z) const {
@@ -147,7 +148,7 @@ void MeniscusMaker::draw_in() {
       const PlanPoint p = plan_.at(double(i) / grid_.along, r);
       const auto t = below(p);
       if (!t) continue;
-      const auto f = above(p, *t - 2);
+      const auto f = above(p, *t - under);
       if (f && *f - *t < needed) first[std::size_t(i)] = 0.8 * (k + 1) / steps;
     }
   for (double& r : first) r = std::min(r, most_drawn);
@@ -163,19 +164,24 @@ void MeniscusMaker::fill_columns() {
   columns_.resize(std::size_t((grid_.along + 1) * (grid_.across + 1)));
   for (int i = 0; i <= grid_.along; ++i) {
     const double s = double(i) / grid_.along, r0 = inner_[std::size_t(i)];
-    // where the inner edge has nothing below it the nearest place outwards counts
+    const double r1 = std::max(1.0, r0 + least_width);
+    // where the inner edge has nothing below it the nearest place outwards counts, then inwards
     std::optional<double> last;
     for (double r = r0; !last && r < 1; r += 0.05) last = below(plan_.at(s, r));
+    for (double r = r0; !last && r > 0; r -= 0.05) last = below(plan_.at(s, r));
     if (!last) throw BodyError(mesh_.name + ": the tibia is not below it");
+    double slope = 0;
     for (int j = 0; j <= grid_.across; ++j) {
-      const double r = r0 + (1 - r0) * j / grid_.across;
+      const double r = r0 + (r1 - r0) * j / grid_.across;
       Column& c = column(i, j);
       c.place = plan_.at(s, r);
       auto t = below(c.place);
-      // beside the plateau the rim keeps the height of its edge
-      if (!t || (r > 0.6 && *t < *last - rim_step)) t = last;
+      // beside the plateau the rim goes on as the plateau slopes
+      const double step = j == 0 ? 0 : distance(c.place, column(i, j - 1).place);
+      if (!t || (r > 0.6 && *t < *last - rim_step)) t = *last + slope * step;
+      if (step > 0) slope = std::clamp((*t - *last) / step, -steepest_rim, 0.0);
       last = t;
-      c.bottom = *t + gap, c.wanted = plan_.height(s, r);
+      c.bottom = *t + gap, c.wanted = plan_.height(s, std::min(r, 1.0));
     }
   }
 }
@@ -183,16 +189,18 @@ void MeniscusMaker::fill_columns() {
 void MeniscusMaker::raise_tops() {
   for (Column& c : columns_) {
     c.top = c.bottom + c.wanted;
-    if (const auto f = above(c.place, c.bottom - 2)) c.top = std::min(c.top, *f - gap);
+    if (const auto f = above(c.place, c.bottom - under)) c.top = std::min(c.top, *f - gap);
   }
 }
 
-// Moves the inner edge out where its columns are too low; false when none is.
+// Moves the inner edge out where a column is too low; false when none is.
 bool MeniscusMaker::draw_in_again() {
   bool again = false;
   for (int i = 0; i <= grid_.along; ++i) {
-    const Column& c = column(i, 0);
-    if (c.top - c.bottom >= least_height || inner_[std::size_t(i)] >= most_drawn) continue;
+    double lowest = 1e30;
+    for (int j = 0; j <= grid_.across; ++j)
+      lowest = std::min(lowest, column(i, j).top - column(i, j).bottom);
+    if (lowest >= least_height || inner_[std::size_t(i)] >= most_drawn) continue;
     again = true;
     for (int n : {i - 1, i, i + 1})
       if (n >= 0 && n <= grid_.along)
@@ -202,9 +210,7 @@ bool MeniscusMaker::draw_in_again() {
   return again;
 }
 
-// Calls act(weights of the four columns, overlap) over places of the top (or bottom) face of the
-// columns from i, j to i + 1, j + 1: how much nearer to the cartilage than the gap [mm] it stands,
-// with the warp of its two triangles; negative where there is room.
+// Calls act over places of the top (or bottom) face of the columns from i, j to i + 1, j + 1.
 template <class F>
 void MeniscusMaker::samples(int i, int j, bool up, F&& act) {
   constexpr int count = 5;
@@ -221,12 +227,20 @@ void MeniscusMaker::samples(int i, int j, bool up, F&& act) {
         face += w[k] * z, foot += w[k] * c[k]->bottom;
         twist += k % 2 ? -z : z;
       }
-      const double warp = std::abs(twist) * std::min(u, 1 - u) * std::min(v, 1 - v);
+      Sample at{w, w, std::min(u, 1 - u) * std::min(v, 1 - v), 0};
+      const double warp = std::abs(twist) * at.most_warp;
+      for (std::size_t k = 0; k < 4; ++k)
+        at.slope[k] += ((k % 2 == 0) == (twist > 0) ? 1 : -1) * (up ? 1 : -1) * at.most_warp;
       if (up) {
-        if (const auto f = above(p, foot - 2)) act(w, face + warp - (*f - gap));
-      } else if (const auto t = below(p)) {
-        act(w, *t + gap - (face - warp));
+        const auto f = above(p, foot - under);
+        if (!f) continue;
+        at.overlap = face + warp - (*f - gap);
+      } else {
+        const auto t = below(p);
+        if (!t) continue;
+        at.overlap = *t + gap - (face - warp);
       }
+      act(at);
     }
 }
 
@@ -235,15 +249,15 @@ void MeniscusMaker::samples(int i, int j, bool up, F&& act) {
 double MeniscusMaker::clear_face(int i, int j, bool up) {
   Column* const c[4] = {&column(i, j), &column(i + 1, j), &column(i + 1, j + 1), &column(i, j + 1)};
   double worst = 0;
-  std::array<double, 4> at{};
-  samples(i, j, up, [&](const std::array<double, 4>& w, double overlap) {
-    if (overlap > worst) worst = overlap, at = w;
+  std::array<double, 4> slope{};
+  samples(i, j, up, [&](const Sample& at) {
+    if (at.overlap > worst) worst = at.overlap, slope = at.slope;
   });
   if (worst <= 1e-3) return 0;
   double squares = 0;
-  for (const double w : at) squares += w * w;
+  for (const double a : slope) squares += a * a;
   for (std::size_t k = 0; k < 4; ++k)
-    (up ? c[k]->top : c[k]->bottom) += (up ? -1 : 1) * worst * at[k] / squares;
+    (up ? c[k]->top : c[k]->bottom) += (up ? -1 : 1) * worst * slope[k] / squares;
   return worst;
 }
 
@@ -255,20 +269,21 @@ void MeniscusMaker::raise_top(int i, int j) {
     const int fi = i + di, fj = j + dj;
     if (fi < 0 || fj < 0 || fi >= grid_.along || fj >= grid_.across) continue;
     const std::size_t own = di == 0 ? (dj == 0 ? 0 : 3) : (dj == 0 ? 1 : 2);
-    samples(fi, fj, true, [&](const std::array<double, 4>& w, double overlap) {
-      if (w[own] > 1e-9) by = std::min(by, std::max(0.0, -overlap) / w[own]);
+    samples(fi, fj, true, [&](const Sample& at) {
+      const double steepest = at.weight[own] + at.most_warp;
+      if (steepest > 1e-9) by = std::min(by, std::max(0.0, -at.overlap) / steepest);
     });
   }
   c.top += std::max(by, 0.0);
 }
 
 void MeniscusMaker::clear(bool up) {
-  constexpr int passes = 40;
+  constexpr int passes = 60;
   for (int pass = 0; pass < passes; ++pass) {
     double worst = 0;
     for (int i = 0; i < grid_.along; ++i)
       for (int j = 0; j < grid_.across; ++j) worst = std::max(worst, clear_face(i, j, up));
-    if (up && pass < 6)
+    if (up && pass < 30)
       for (int i = 0; i <= grid_.along; ++i)
         for (int j = 0; j <= grid_.across; ++j) raise_top(i, j);
     else if (worst == 0)
@@ -412,7 +427,7 @@ void MeniscusMaker::contact(bool up) {
 std::pair<MeniscusMesh, MeniscusReport> MeniscusMaker::make() {
   report_.name = mesh_.name;
   draw_in();
-  for (int pass = 0; pass < 10; ++pass) {
+  for (int pass = 0; pass < 20; ++pass) {
     fill_columns();
     clear(false);
     raise_tops();
@@ -422,7 +437,7 @@ std::pair<MeniscusMesh, MeniscusReport> MeniscusMaker::make() {
   for (int i = 0; i <= grid_.along; ++i) {
     const double s = double(i) / grid_.along;
     const PlanPoint a = plan_.at(s, 0), b = plan_.at(s, inner_[std::size_t(i)]);
-    report_.drawn_in = std::max(report_.drawn_in, std::hypot(b.x - a.x, b.y - a.y));
+    report_.drawn_in = std::max(report_.drawn_in, distance(a, b));
   }
   bricks();
   fibres();
@@ -434,7 +449,7 @@ std::pair<MeniscusMesh, MeniscusReport> MeniscusMaker::make() {
     for (const auto& [j, length] :
          {std::pair{0, &report_.inner_length}, {grid_.across, &report_.rim_length}}) {
       const PlanPoint a = column(i - 1, j).place, b = column(i, j).place;
-      *length += std::hypot(b.x - a.x, b.y - a.y);
+      *length += distance(a, b);
     }
   }
   return {mesh_, report_};
@@ -445,17 +460,17 @@ std::pair<MeniscusMesh, MeniscusReport> MeniscusMaker::make() {
 std::vector<MeniscusReport> add_menisci(const std::vector<PlacedBone>& bones,
                                         BetweenBones& between) {
   std::vector<MeniscusReport> reports;
-  for (const Side side : {Side::right, Side::left}) {
-    Knee knee{find_bone(bones, "femur", side), find_bone(bones, "tibia", side), side, {}, {}};
-    if (knee.femur < 0 || knee.tibia < 0) continue;
-    const PlacedBone& tibia = bones[std::size_t(knee.tibia)];
+  for (const Articulation& joint : articulations(bones)) {
+    if (joint.kind != ArticulationKind::meniscal) continue;
+    Knee knee{joint.a, joint.b, joint.side, {}, {}};
+    const PlacedBone &femur = bones[std::size_t(joint.a)], &tibia = bones[std::size_t(joint.b)];
     const std::string cartilage =
-        fmt::format("{}.{}.knee.cartilage_", name_of(tibia.region), name_of(side));
-    knee.above = knee_faces(bones, knee.femur, between, cartilage + "femur");
-    knee.below = knee_faces(bones, knee.tibia, between, cartilage + "tibia");
+        fmt::format("{}.{}.{}.cartilage_", name_of(tibia.region), name_of(joint.side), joint.name);
+    knee.above = knee_faces(bones, knee.femur, between, cartilage + femur.mesh.name);
+    knee.below = knee_faces(bones, knee.tibia, between, cartilage + tibia.mesh.name);
     std::vector<std::pair<MeniscusPlan, MeniscusMesh>> menisci;
     for (const char* name : names) {
-      const MeniscusPlan plan(name, tibia.mesh.scale);
+      const MeniscusPlan plan(name, tibia.mesh.scale, flexion(femur, tibia));
       auto [mesh, report] = MeniscusMaker(bones, knee, plan, between).make();
       menisci.emplace_back(plan, mesh);
       reports.push_back(report);
@@ -465,12 +480,13 @@ std::vector<MeniscusReport> add_menisci(const std::vector<PlacedBone>& bones,
   return reports;
 }
 
-double meniscus_height(const PlacedBone& tibia, const Point& p) {
+double meniscus_height(const PlacedBone& femur, const PlacedBone& tibia, const Point& p) {
   const Point local = tibia.placement.inverse(p);
   const PlanPoint place{local.x, tibia.side == Side::left ? -local.y : local.y};
   double height = 0;
   for (const char* name : names)
-    height = std::max(height, MeniscusPlan(name, tibia.mesh.scale).height_at(place));
+    height = std::max(height,
+                      MeniscusPlan(name, tibia.mesh.scale, flexion(femur, tibia)).height_at(place));
   return height;
 }
 

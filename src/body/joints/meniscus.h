@@ -23,12 +23,12 @@ struct MeniscusReport {
   double least_scaled_jacobian = 1;
 };
 
-// Adds the menisci of every knee whose femur and tibia are there. The cartilage of the knee must
-// have been made before. Throws BodyError that names a meniscus without any room.
+// Adds the menisci of every articulation of the kind meniscal. Its cartilage must have been made
+// before. Throws BodyError that names a meniscus without any room.
 std::vector<MeniscusReport> add_menisci(const std::vector<PlacedBone>& bones,
                                         BetweenBones& between);
 
 // Height [mm] that a meniscus wants over a place (global) of the tibia's plateau; 0 beside it.
-double meniscus_height(const PlacedBone& tibia, const Point& p);
+double meniscus_height(const PlacedBone& femur, const PlacedBone& tibia, const Point& p);
 
 }  // namespace fabrica::body

@@ -29,6 +29,12 @@ struct Knee {
 Knee::Faces knee_faces(const std::vector<PlacedBone>& bones, int index, const BetweenBones& between,
                        const std::string& cartilage);
 
+// Does no corner of a face, with what contact keeps around it, stand behind one of the others, nor
+// a corner of those behind the face?
+bool clear_of(const std::array<PieceNode, 4>& face, double shell,
+              const std::array<double, 4>& corner_shell,
+              const std::vector<std::array<PieceNode, 4>>& others);
+
 struct MeniscusMesh {
   int piece = -1;  // index into the list of pieces
   int along = 0, across = 0, layers = 0;

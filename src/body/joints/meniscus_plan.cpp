@@ -11,6 +11,8 @@ namespace fabrica::body {
 namespace {
 
 constexpr int pieces = 96;  // of the curves, where lengths and areas are summed
+// of the standing body, in the frame of the tibia, whose y joins the malleoli
+constexpr PlanPoint backwards{-0.832, -0.554};
 
 double cross2(const PlanPoint& o, const PlanPoint& a, const PlanPoint& b) {
   return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
@@ -18,10 +20,14 @@ double cross2(const PlanPoint& o, const PlanPoint& a, const PlanPoint& b) {
 
 }  // namespace
 
-MeniscusPlan::MeniscusPlan(const std::string& name, const Point& scale) : name_(name) {
+MeniscusPlan::MeniscusPlan(const std::string& name, const Point& scale, double flexion)
+    : name_(name) {
   const Table table("anatomy/joints/menisci.csv");
+  const double q = std::clamp(flexion / 120, 0.0, 1.0), share = q * (1.814 - 0.814 * q);
   const auto place = [&](int row, const char* x, const char* y) {
-    return PlanPoint{scale.x * table.number(row, x), scale.y * table.number(row, y)};
+    const double back = share * table.number(row, "back");
+    return PlanPoint{scale.x * (table.number(row, x) + back * backwards.x),
+                     scale.y * (table.number(row, y) + back * backwards.y)};
   };
   for (int row = 0; row < table.rows(); ++row)
     if (table.text(row, "meniscus") == name)

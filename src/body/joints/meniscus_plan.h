@@ -3,7 +3,9 @@
 // anterior end (0) to the posterior one (1) and r from the inner edge (0) to the rim (1),
 //   p(s, r) = (1 - r) a(s) + r b(s),   h(s, r) = e + r (H(s) - e)                              (1)
 // a, b, H: curves of Catmull and Rom through the stations of the table; e the height of the inner
-// edge.
+// edge. As the knee bends the stations travel backwards with the femur, to their places at 120
+// degrees by the share of its own way there (s_x of docs/theory/knee.md),
+//   share = s_x(f) / s_x(120) = q (1.814 - 0.814 q),   q = min(f / 120, 1).                   (2)
 #include <array>
 #include <string>
 #include <vector>
@@ -19,8 +21,9 @@ struct PlanPoint {
 class MeniscusPlan {
  public:
   static constexpr double edge_height = 0.8;  // [mm] e; the true edge is sharp
-  // "medial" or "lateral"; throws BodyError where the table has fewer than four stations of it
-  MeniscusPlan(const std::string& name, const Point& scale);
+  // "medial" or "lateral", the knee bent by an angle [deg]; throws BodyError where the table has
+  // fewer than four stations of it
+  MeniscusPlan(const std::string& name, const Point& scale, double flexion);
 
   PlanPoint at(double s, double r) const;   // (1)
   double height(double s, double r) const;  // [mm] (1)
