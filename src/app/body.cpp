@@ -1,6 +1,7 @@
 #include "app/body.h"
 
 #include <fmt/core.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <ctime>
@@ -29,6 +30,9 @@ namespace {
 
 using body::BodyError;
 
+// a line that is written over belongs on a terminal, not in a file
+bool shows_progress(const BodyCommand& c) { return !c.quiet && ::isatty(STDERR_FILENO) == 1; }
+
 body::BodyOptions options_of(const BodyCommand& c) {
   if (c.only != "skeleton")
     throw BodyError(fmt::format(
@@ -45,7 +49,7 @@ body::BodyOptions options_of(const BodyCommand& c) {
   options.resolution = body::resolution_named(c.resolution);
   options.joints = !c.no_joints;
   options.only = c.bones;
-  if (!c.quiet)
+  if (shows_progress(c))
     options.progress = [](const std::string& bone) { fmt::print(stderr, "\r{:<24}", bone); };
   return options;
 }
@@ -134,7 +138,7 @@ int body_command(const BodyCommand& c) {
   trial.surround(made, assembled, builder);
   const std::unique_ptr<Model> model = builder.finish();
   const double seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
-  if (!c.quiet) fmt::print(stderr, "\r{:<24}\r", "");
+  if (shows_progress(c)) fmt::print(stderr, "\r{:<24}\r", "");
   for (const Diagnostic& d : diagnostics.list()) fmt::print(stderr, "{}\n", diagnostics.format(d));
   if (diagnostics.has_errors()) return 1;
   const std::filesystem::path deck = c.out, folder = deck.parent_path();
@@ -193,7 +197,7 @@ void add_body(CLI::App& app, BodyCommand& c) {
                   "--stature, --mass and --posture")
       ->check(CLI::PositiveNumber);
   cmd->add_flag("--list", c.list, "list the bones");
-  cmd->add_flag("--quiet", c.quiet, "no progress");
+  cmd->add_flag("--quiet", c.quiet, "no progress (none is shown where stderr is no terminal)");
   cmd->callback([&c] { throw CLI::RuntimeError(body_command(c)); });
 }
 
