@@ -204,7 +204,11 @@ ClearanceReport clear_bones(std::vector<PlacedBone>& bones) {
     for (const int b : bones_of(touches, mirrors)) search.moved(b);
     touches = search.list();
   };
-  for (const double weight : {10.0, 50.0, 200.0, 600.0, 1500.0, 1500.0}) press(weight, 20);
+  // a change spreads by about one brick an iteration: short of rest, bones lose volume at their
+  // ends
+  const bool fine = !bones.empty() && bones.front().mesh.resolution == Resolution::fine;
+  const int iterations = fine ? 60 : 20;
+  for (const double weight : {10.0, 50.0, 200.0, 600.0, 1500.0, 1500.0}) press(weight, iterations);
   const auto overlap = [&] {
     return std::any_of(touches.begin(), touches.end(),
                        [](const Touch& t) { return t.distance < -allowed; });
