@@ -112,16 +112,19 @@ std::vector<std::vector<Touch>> groups_of(const std::vector<Touch>& touches,
   return list;
 }
 
-// other bones that a bone touches, as planes that its nodes stay in front of
-std::vector<PlaneNode> planes_of(const std::vector<Touch>& touches, int index,
+// Other bones that a bone or its mirror image touches, as planes that its nodes stay in front of:
+// the image gets its nodes, and warped faces of the midline may lie otherwise on its side.
+std::vector<PlaneNode> planes_of(const std::vector<Touch>& touches, int index, int twin,
                                  const std::vector<PlacedBone>& bones) {
   std::vector<PlaneNode> planes;
   for (const Touch& t : touches) {
-    if (t.a != index) continue;
-    Point place{0, 0, 0};
+    if (t.a != index && t.a != twin) continue;
+    Point place = t.gap * t.normal;
     for (std::size_t i = 0; i < 4; ++i)
       place += t.weight[i] * bones[std::size_t(t.b)].nodes[std::size_t(t.quad[i])];
-    planes.push_back({t.node, place + t.gap * t.normal, t.normal, 2000, true});
+    const bool image = t.a == twin;
+    planes.push_back(
+        {t.node, image ? mirror(place) : place, image ? mirror(t.normal) : t.normal, 2000, true});
   }
   return planes;
 }
@@ -133,7 +136,7 @@ void polish_all(std::vector<PlacedBone>& bones, const std::vector<Touch>& touche
     const int twin = mirrors.twin[std::size_t(b)];
     if (twin >= 0 && bone.side == Side::left) continue;
     mend(bone.mesh, bone.nodes, mirrors.own[std::size_t(b)], search.surfaces[b],
-         planes_of(touches, b, bones));
+         planes_of(touches, b, twin, bones));
     search.moved(b);
     if (twin < 0) continue;
     for (std::size_t n = 0; n < bone.nodes.size(); ++n)
