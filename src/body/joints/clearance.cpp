@@ -191,6 +191,7 @@ void finish(std::vector<PlacedBone>& bones, const std::vector<std::vector<Point>
 ClearanceReport clear_bones(std::vector<PlacedBone>& bones) {
   const std::vector<Articulation> joints = articulations(bones);
   const Mirror mirrors(bones);
+  restore_symmetry(mirrors, bones);
   ClearanceReport report;
   const LargestShift whole = shift_bones(bones, joints, mirrors.twin);
   report.whole_shift = whole.shift;

@@ -8,11 +8,13 @@
 namespace fabrica::body {
 
 struct Mirror {
-  // Bones that mirror each other within 1e-6 mm; bones of the midline that mirror themselves so are
-  // moved to do it to the bit.
-  explicit Mirror(std::vector<PlacedBone>& bones);
+  // bones that mirror each other, or themselves, within 1e-6 mm
+  explicit Mirror(const std::vector<PlacedBone>& bones);
   std::vector<int> twin;  // of each bone the one that is its mirror image, -1: none stands so
   std::vector<char> own;  // the bone mirrors itself by mesh.image
 };
+
+// Moves the bones that mirror themselves so that they do it to the bit.
+void restore_symmetry(const Mirror& mirrors, std::vector<PlacedBone>& bones);
 
 }  // namespace fabrica::body
