@@ -103,11 +103,7 @@ class Knee {
   void report() const;
 
  private:
-  static const Joint& joint(const std::string& name) {
-    for (const Joint& j : joint_tree())
-      if (j.name == name) return j;
-    throw BodyError("no joint " + name);
-  }
+  static const Joint& joint(const std::string& name) { return *find_joint(name); }
   Placement frame(const std::string& name) const { return standing_.frame(name, Side::right); }
   static Mat3d turn(const std::string& name, double angle, double varus, double inwards) {
     return rotation_about(joint(name).axes.front().axis, angle * degree) *
@@ -124,11 +120,7 @@ class Knee {
     constexpr double far = 20;  // [mm] where nothing is met
     return std::min(now.gap, far) - gap - share(f) * (start.gap - gap);
   }
-  Point middle() const {
-    Point sum{0, 0, 0};
-    for (const Point& p : patella_.nodes) sum += p;
-    return frame("patella")((1.0 / double(patella_.nodes.size())) * sum);
-  }
+  Point middle() const { return frame("patella")(middle_of(patella_.nodes)); }
 
   BoneMesh femur_ = mesh_bone({"femur", Resolution::standard}),
            tibia_ = mesh_bone({"tibia", Resolution::standard}),

@@ -156,13 +156,11 @@ void level_head(Posture& posture, const Subject& subject) {
     static const std::vector<std::string> all{"C7", "C6", "C5", "C4", "C3", "C2", "C1", "head"};
     const auto at = std::find(all.begin(), all.end(), name);
     const double share = left / double(all.end() - at);
-    for (const Joint& j : joint_tree())
-      if (j.name == name) {
-        double& angle = posture.angle[j.name + ".flexion"];
-        const double before = angle;
-        angle = std::clamp(before + share, j.axes[0].low, j.axes[0].high);
-        left -= angle - before;
-      }
+    const JointAxis& axis = find_joint(name)->axes[0];
+    double& angle = posture.angle[axis.joint + ".flexion"];
+    const double before = angle;
+    angle = std::clamp(before + share, axis.low, axis.high);
+    left -= angle - before;
   }
   const double off = head_pitch(Skeleton(subject, posture));
   if (std::abs(off) > 1)

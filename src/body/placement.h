@@ -2,6 +2,7 @@
 // Where a bone's frame stands: p_global = t + R p_bone, lengths in mm. Sides are mirror images
 // about y = 0.
 #include <cmath>
+#include <vector>
 
 #include "base/tensor.h"
 
@@ -26,6 +27,11 @@ inline Mat3d rotation_about(const Point& a, double angle) {
 }
 
 inline Point unit(const Point& p) { return (1 / norm(p)) * p; }
+inline Point middle_of(const std::vector<Point>& points) {
+  Point sum{0, 0, 0};
+  for (const Point& p : points) sum += p;
+  return (1.0 / double(points.size())) * sum;
+}
 inline Point mirror(const Point& p) { return {p.x, -p.y, p.z}; }
 // the placement of the bone of the other side: t_y -> -t_y, R -> M R M, M = diag(1, -1, 1)
 inline Placement mirror(const Placement& p) {

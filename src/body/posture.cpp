@@ -31,12 +31,6 @@ Name split(const std::string& text) {
   return name;
 }
 
-const Joint* find_joint(const std::string& name) {
-  for (const Joint& j : joint_tree())
-    if (j.name == name) return &j;
-  return nullptr;
-}
-
 Joint& joint_of_row(std::vector<Joint>& joints, const Table& table, int row) {
   const auto at = std::find_if(joints.begin(), joints.end(),
                                [&](const Joint& j) { return j.name == table.text(row, "joint"); });
@@ -191,6 +185,12 @@ PathPoint Joint::path_at(double at) const {
 const std::vector<Joint>& joint_tree() {
   static const std::vector<Joint> joints = read_joints();
   return joints;
+}
+
+const Joint* find_joint(const std::string& name) {
+  for (const Joint& j : joint_tree())
+    if (j.name == name) return &j;
+  return nullptr;
 }
 
 double Posture::get(const std::string& joint, Side side, const std::string& coordinate) const {

@@ -37,6 +37,8 @@ struct Joint {
 };
 // all joints, parents before children
 const std::vector<Joint>& joint_tree();
+// the one of that name, nullptr if there is none
+const Joint* find_joint(const std::string& name);
 
 struct Posture {
   std::string name = "standing";

@@ -33,12 +33,6 @@ std::vector<Point> even_directions(Side side) {
   return list;
 }
 
-Point middle_of(const std::vector<Point>& points) {
-  Point sum{0, 0, 0};
-  for (const Point& p : points) sum += p;
-  return (1.0 / double(points.size())) * sum;
-}
-
 // (1)
 class Hull {
  public:

@@ -75,9 +75,10 @@ Curve samples(const std::string& model, const std::string& over, const std::stri
   for (const double v : y)
     if (!std::isfinite(v))
       throw StudyError("'" + model + "' holds a value that is not a number. Look at the run");
-  const std::vector<double> times = channels.abscissa(model);
-  if (!filter.empty()) y = filtered(filter, {times, std::move(y)}, channels.time_unit());
+  if (!filter.empty())
+    y = filtered(filter, {channels.abscissa(model), std::move(y)}, channels.time_unit());
   if (window) {
+    const std::vector<double> times = channels.abscissa(model);
     x = within(*window, times, x), y = within(*window, times, y);
   }
   return {std::move(x), std::move(y)};

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 
 #include "body/joints/bone_surface.h"
@@ -153,7 +154,9 @@ std::vector<std::array<PieceNode, 4>> ArticulationMaker::layer(const Articulatio
   PieceBuilder builder(bones_);
   std::map<int, Point> top;
   std::map<int, int> top_node;  // made when a brick needs it
-  std::set<int> crowded;        // nodes without room for two layers: no cartilage, no contact there
+  std::optional<MeniscusRoom> menisci;
+  if (joint.kind == ArticulationKind::meniscal) menisci.emplace(bone(joint.a), bone(joint.b));
+  std::set<int> crowded;  // nodes without room for two layers: no cartilage, no contact there
   for (auto& [node, normal] : normals) {
     const Point& p = here.nodes[std::size_t(node)];
     normal = (1 / norm(normal)) * normal;
@@ -164,9 +167,7 @@ std::vector<std::array<PieceNode, 4>> ArticulationMaker::layer(const Articulatio
       crowded.insert(node);
       continue;
     }
-    const double meniscus = joint.kind == ArticulationKind::meniscal
-                                ? meniscus_height(bone(joint.a), bone(joint.b), p)
-                                : 0;
+    const double meniscus = menisci ? menisci->height(p) : 0;
     const double beside =
         meniscus > 0 ? std::max(room - 0.5 * meniscus, under_meniscus) : cartilage;
     const double thickness = std::clamp(std::min(room, beside), thinnest, cartilage);

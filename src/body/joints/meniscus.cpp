@@ -480,13 +480,16 @@ std::vector<MeniscusReport> add_menisci(const std::vector<PlacedBone>& bones,
   return reports;
 }
 
-double meniscus_height(const PlacedBone& femur, const PlacedBone& tibia, const Point& p) {
-  const Point local = tibia.placement.inverse(p);
-  const PlanPoint place{local.x, tibia.side == Side::left ? -local.y : local.y};
+MeniscusRoom::MeniscusRoom(const PlacedBone& femur, const PlacedBone& tibia) : tibia_(tibia) {
+  const double bent = flexion(femur, tibia);
+  for (const char* name : names) plans_.emplace_back(name, tibia.mesh.scale, bent);
+}
+
+double MeniscusRoom::height(const Point& p) const {
+  const Point local = tibia_.placement.inverse(p);
+  const PlanPoint place{local.x, tibia_.side == Side::left ? -local.y : local.y};
   double height = 0;
-  for (const char* name : names)
-    height = std::max(height,
-                      MeniscusPlan(name, tibia.mesh.scale, flexion(femur, tibia)).height_at(place));
+  for (const MeniscusPlan& plan : plans_) height = std::max(height, plan.height_at(place));
   return height;
 }
 

@@ -9,6 +9,7 @@
 //   k = (E_fibre - E) V / (4 L^2).                                                             (2)
 // Horns are tied to the tibia by strands, rims by those of the coronary ligaments
 // (data/anatomy/joints/meniscus_ligaments.csv). Contact above with the femur, below with the tibia.
+#include "body/joints/meniscus_plan.h"
 #include "body/piece.h"
 
 namespace fabrica::body {
@@ -28,7 +29,15 @@ struct MeniscusReport {
 std::vector<MeniscusReport> add_menisci(const std::vector<PlacedBone>& bones,
                                         BetweenBones& between);
 
-// Height [mm] that a meniscus wants over a place (global) of the tibia's plateau; 0 beside it.
-double meniscus_height(const PlacedBone& femur, const PlacedBone& tibia, const Point& p);
+// What the menisci of a knee want over its plateau.
+class MeniscusRoom {
+ public:
+  MeniscusRoom(const PlacedBone& femur, const PlacedBone& tibia);
+  double height(const Point& p) const;  // [mm] over a place (global); 0 beside them
+
+ private:
+  const PlacedBone& tibia_;
+  std::vector<MeniscusPlan> plans_;
+};
 
 }  // namespace fabrica::body

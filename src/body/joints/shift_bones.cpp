@@ -110,12 +110,6 @@ std::vector<Group> groups_of(const std::vector<PlacedBone>& bones) {
   return groups;
 }
 
-Point middle_of(const PlacedBone& bone) {
-  Point sum{0, 0, 0};
-  for (const Point& p : bone.nodes) sum += p;
-  return (1.0 / double(bone.nodes.size())) * sum;
-}
-
 // (1) for one group. A phalanx moves along its ray alone: the ends of two bones in line lean
 // against each other, and free to choose one would slip off the other sideways.
 Point wish_of(const Group& group, const std::vector<PlacedBone>& bones, const Surfaces& surfaces,
@@ -137,8 +131,8 @@ Point wish_of(const Group& group, const std::vector<PlacedBone>& bones, const Su
   if (count == 0) return {0, 0, 0};
   for (int i = 0; i < 3; ++i) m(i, i) += softness * count;
   if (group.ray_from >= 0) {
-    const Point chord =
-        middle_of(bones[std::size_t(group.root)]) - middle_of(bones[std::size_t(group.ray_from)]);
+    const Point chord = middle_of(bones[std::size_t(group.root)].nodes) -
+                        middle_of(bones[std::size_t(group.ray_from)].nodes);
     const Point along = (1.0 / norm(chord)) * chord;
     return (dot(rhs, along) / dot(along, m * along)) * along;
   }
