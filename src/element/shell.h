@@ -84,6 +84,8 @@ struct ShellStrain {
   L kxx, kyy, kxy;
 };
 
+constexpr Real unbounded_stress = Real(1e30);
+
 // What the layers of one in-plane point answer, per unit of area of the reference surface.
 template <class L>
 struct ShellResultants {
@@ -93,7 +95,7 @@ struct ShellResultants {
   L thinning;    // sum w e_zz
   L stiffening;  // largest ratio of tangent to initial modulus, >= 1
   L alive;       // 0: every layer has failed
-  L kept;        // what the return mapping left of the elastic trial stress, 0 to 1; 1: elastic
+  L flow;        // von Mises stress in the plane while the layers flow, else unbounded
 };
 
 // History of the layers of one in-plane point: per layer xx yy xy yz zx, [alive], material state.
@@ -162,9 +164,8 @@ struct ShellLayers {
       modulus = max(modulus, point.modulus);
     }
     finish(r, h);
-    // rounding must not wear elastic hourglass forces away
-    const L ratio = kept / trial;
-    r.kept = select(ratio < L(0.9999), sqrt(ratio), L(1.0));
+    // rounding must not pass for flow
+    r.flow = select(kept < L(0.9998) * trial, sqrt(kept), L(unbounded_stress));
     r.stiffening = modulus / start.modulus;
     if constexpr (!M::can_fail) r.alive = L(1.0);
     return r;

@@ -13,13 +13,14 @@
 // would feel:
 //   q_x = gamma.vx + (h.z) vz,x,  q_y = gamma.vy + (h.z) vz,y
 //   C1 = QB E h^3 A BB/192,  C2 = QW k G h^3 BB/12,  C3 = QM E h A BB/8,  BB = B1.B1 + B2.B2    (3)
-// IHQ 4, 5: Q <- k (Q + C q dt), k the share of the elastic trial stress that the layers' return
-// mapping kept: the stress field that the hourglass modes stand for would flow with them, and
-// elastic forces beside flowing stress would grow without bound. IHQ 1-3 (viscous): Q = C q
-// sqrt(A)/c. Warping (Belytschko, Wong, Chiang): zg = (h.z)/4, s = 2 zg/A^2
+// IHQ 4, 5: Q <- Q + C q dt. While the layers flow, at the stress s, Q is held at what the mode
+// could carry if all of its stress were s:
+//   |Q| <= s h sqrt(A)/4  (forces),  s h^2 sqrt(A)/16  (moments)                                (4)
+// IHQ 1-3 (viscous): Q = C q sqrt(A)/c. Warping (Belytschko, Wong, Chiang): zg = (h.z)/4, s = 2
+// zg/A^2
 //   kxx += s (x31 vx31 - x42 vx42),  kyy += s (y31 vy31 - y42 vy42),
-//   2kxy += s (y31 vx31 - y42 vx42 + x31 vy31 - x42 vy42)                                       (4)
-// Forces are the transposes of (2), (3) and (4).
+//   2kxy += s (y31 vx31 - y42 vx42 + x31 vy31 - x42 vy42)                                       (5)
+// Forces are the transposes of (2), (3) and (5).
 // Sources: Belytschko, Lin, Tsay, CMAME 42 (1984) 225; Belytschko, Wong, Chiang, CMAME 96 (1992)
 // 93.
 #include "element/shell.h"
@@ -134,7 +135,7 @@ struct ShellBTOf {
     FABRICA_FN L dy(const L& u31, const L& u42) const {
       return half_inverse * fma(x31, u42, -(x42 * u31));
     }
-    FABRICA_FN L warp() const { return hz * L(2.0) * half_inverse * half_inverse; }  // s of (4)
+    FABRICA_FN L warp() const { return hz * L(2.0) * half_inverse * half_inverse; }  // s of (5)
   };
 
   // Corner motion in the frame as differences over the diagonals, hourglass combinations and means.
@@ -223,11 +224,13 @@ struct ShellBTOf {
     L energy = L(0.0);
     const bool stiff = p.hourglass >= 4;
     const L viscous = root_area * L(1 / plate_speed(p));
+    const L force = L(0.25) * h * root_area * r.flow, moment = L(0.25) * h * force;
     for (int k = 0; k < 5; ++k) {
       const L c = stiffness[k < 2 ? 0 : k == 2 ? 1 : 2];
       if (stiff) {
         const L old = s.load(hourglass_field + k);
-        q[k] = (alive * r.kept) * fma(c * L(stiffness_share) * dt, rate[k], old);
+        const L bound = k < 2 ? moment : force;
+        q[k] = alive * clamp(fma(c * L(stiffness_share) * dt, rate[k], old), -bound, bound);
         s.store(hourglass_field + k, q[k]);
         energy = fma(L(0.5) * (old + q[k]), rate[k], energy);
       } else {

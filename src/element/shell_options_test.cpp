@@ -193,6 +193,38 @@ TEST_CASE("shell: the stiffness form holds a known share of full integration") {
   }
 }
 
+// Equation (4) of shell_bt.h: while a square flows at the yield stress s, an hourglass motion of
+// amplitude q takes 4 q s h sqrt(A)/4 of energy, in bending 4 q s h^2 sqrt(A)/16; before and after
+// flow the forces are elastic.
+TEST_CASE("shell: hourglass forces are held at yield while the layers flow") {
+  const double h = 0.1, a = 2, q = 1e-3, yield = 0.3;
+  const double sign[4] = {1, -1, 1, -1};
+  for (const bool bends : {false, true}) {
+    auto m = rectangle<ShellBT, PlasticKinematic>(a, a);
+    m.law.failure_strain = Real(100);
+    m.p.hourglass_coefficient = m.p.hourglass_bending = Real(1);
+    m.start(h);
+    m.dt = 1;
+    const auto step = [&](double stretched) {
+      stretch(m, stretched, 0);
+      for (int c = 0; c < 4; ++c) {
+        (bends ? m.w : m.v)[std::size_t(c)] += Vec3d{0, q * sign[c], 0};
+      }
+      m.hourglass = 0;
+      m.forces();
+      std::fill(m.w.begin(), m.w.end(), Vec3d{});
+      return m.hourglass;
+    };
+    const double elastic = step(0), growth = step(0) - elastic;
+    CHECK(growth == doctest::Approx(2 * elastic).epsilon(1e-4));
+    double flowing = 0;
+    for (int k = 0; k < 100; ++k) flowing = step(2e-3);
+    const double held = q * yield * h * a * (bends ? h / 4 : 1);
+    CHECK(flowing == doctest::Approx(held).epsilon(2e-3));
+    CHECK(step(-1e-5) == doctest::Approx(held + elastic).epsilon(2e-3));
+  }
+}
+
 // Rectangle 2 x 1: A/longest side = 1, A/diagonal = 2/sqrt 5; ISDO = 2 uses the speed of a bar.
 TEST_CASE("shell: stable step by ISDO") {
   const double bar = std::sqrt(210 / 7.85e-6), plate = bar / std::sqrt(1 - 0.09);
