@@ -28,6 +28,11 @@ void add_run(CLI::App& app, fabrica::RunCommand& c) {
   run->add_flag("--vtu", c.vtu, "also write a .vtu series for ParaView");
   run->add_flag("--allow-unsupported", c.allow_unsupported,
                 "run although the deck holds keywords that are not supported");
+  run->add_option("--walls", c.walls,
+                  "how rigid walls stop nodes: impulse (before they are behind, Coulomb friction), "
+                  "constraint (put back once found behind, as LS-DYNA is described to)")
+      ->check(CLI::IsMember({"impulse", "constraint"}))
+      ->capture_default_str();
   run->add_flag("--quiet", c.quiet, "no progress lines");
   run->callback([&c] { throw CLI::RuntimeError(fabrica::run_command(c)); });
 }

@@ -272,6 +272,7 @@ int run_command(const RunCommand& c) {
   RunOptions options;
   options.threads = c.threads > 0 ? c.threads : int(std::thread::hardware_concurrency());
   options.end_time = c.until;
+  options.walls = c.walls == "constraint" ? WallMethod::constraint : WallMethod::impulse;
   Simulation simulation(*model, options, diagnostics);
   for (std::size_t i = printed; i < diagnostics.list().size(); ++i)
     fmt::print(stderr, "{}\n", diagnostics.format(diagnostics.list()[i]));

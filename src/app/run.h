@@ -14,6 +14,7 @@ struct RunCommand {
   double restart_interval = 0;  // time between restart files; 0: one at the end
   bool vtu = false;             // also write a .vtu series
   bool allow_unsupported = false;
+  std::string walls = "impulse";  // how rigid walls stop nodes: impulse, constraint
   bool quiet = false;
 };
 // Returns the exit status: 0 done, 1 bad input, 2 unsupported input, 3 the physics broke, 130

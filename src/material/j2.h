@@ -1,12 +1,10 @@
 #pragma once
 // Return mapping of von Mises plasticity with isotropic and linear kinematic hardening, in three
-// dimensions and in plane stress. In plane stress transverse shear is elastic and does not take
-// part in the yield function, as is usual for shells: it stands for forces between the layers,
-// which are found from equilibrium, not from flow (docs/theory/elements/shell.md).
+// dimensions and in plane stress, where transverse shear flows with the rest or stays elastic.
 //   xi = s - a,   q^2 = 3/2 dev(xi):dev(xi),   q <= Y(ep + dep),   dep = 2/3 lambda q (1) d(plastic
 //   strain) = lambda dev(xi),   da = 2/3 Hk lambda dev(xi) q(lambda)^2 = A / (1 + ca lambda)^2 + B
 //   / (1 + cb lambda)^2,   cb = 2G + 2/3 Hk                         (2) three dimensions: A = 0, B
-//   = q_trial^2 plane stress:     A = (xx+yy)^2/4, B = 3/4 (yy-xx)^2 + 3 xy^2, ca =
+//   = q_trial^2 plane stress:     A = (xx+yy)^2/4, B = 3/4 (yy-xx)^2 + 3 (xy^2+yz^2+zx^2), ca =
 //   E/(3(1-nu)) + 2/3 Hk
 // xi of plane stress is s - (a - a_zz I), so that its zz part vanishes.
 // Source: Simo and Taylor, Int. J. Num. Meth. Eng. 22 (1986); Simo and Hughes, Computational
@@ -100,11 +98,11 @@ FABRICA_FN L j2_bracket(const J2Modes<L>& modes, const L& q_trial, const L& stat
   return select(q_trial > static_yield, bound * second * second, L(0.0)) * L(1 / modes.cb);
 }
 
-// Strain increments completed for the rate measure: yield matters where the material flows, flow
-// keeps volume, and transverse shear of plane stress takes no part in it.
+// Strain increments completed for the rate measure: yield matters where the material flows, and
+// flow keeps volume.
 template <class L>
 FABRICA_FN Sym3<L> plane_flow_strain(const Sym3<L>& strain) {
-  return {strain.xx, strain.yy, -(strain.xx + strain.yy), strain.xy, L(0.0), L(0.0)};
+  return {strain.xx, strain.yy, -(strain.xx + strain.yy), strain.xy, strain.yz, strain.zx};
 }
 template <class L>
 FABRICA_FN Sym3<L> fibre_flow_strain(const Sym3<L>& strain) {
@@ -177,8 +175,11 @@ FABRICA_FN Sym3<L> j2_finish(const J2Moduli& m, const J2Trial<L>& t, const L& la
   return t.stress - (L(2 * m.shear) * flow) * t.xi;
 }
 
+// Whether transverse shear of plane stress takes part in the yield function.
+enum class TransverseShear { flows, elastic };
+
 // Elastic trial in plane stress; strain.zz is not read.
-template <class L>
+template <TransverseShear across, class L>
 FABRICA_FN J2Trial<L> j2_plane_trial(const J2Moduli& m, const Sym3<L>& old, const Sym3<L>& strain,
                                      const Sym3<L>& back) {
   const Real E = m.youngs(), nu = m.poisson(), c = E / (1 - nu * nu);
@@ -191,10 +192,12 @@ FABRICA_FN J2Trial<L> j2_plane_trial(const J2Moduli& m, const Sym3<L>& old, cons
   t.stress.yz = fma(twice, strain.yz, old.yz);
   t.stress.zx = fma(twice, strain.zx, old.zx);
   t.xi = plus_sphere(t.stress - back, back.zz);
+  if constexpr (across == TransverseShear::elastic) t.xi.yz = t.xi.zx = L(0.0);
   const L sum = t.xi.xx + t.xi.yy, difference = t.xi.yy - t.xi.xx;
+  const L shear = fma(t.xi.xy, t.xi.xy, fma(t.xi.yz, t.xi.yz, t.xi.zx * t.xi.zx));
   const Real hardening = Real(2.0 / 3.0) * m.kinematic;
   const Real cb = 2 * m.shear + hardening;
-  t.modes = {L(0.25) * sum * sum, fma(L(0.75), difference * difference, L(3.0) * t.xi.xy * t.xi.xy),
+  t.modes = {L(0.25) * sum * sum, fma(L(0.75), difference * difference, L(3.0) * shear),
              (E / (3 * (1 - nu)) + hardening) / cb, cb};
   t.q = sqrt(t.modes.A + t.modes.B);
   return t;
@@ -208,8 +211,12 @@ FABRICA_FN Sym3<L> j2_plane_finish(const J2Moduli& m, const Sym3<L>& old, const 
   const L r = L(1.0) / (pa * pb), a = pb * r, b = pa * r;
   const L sum = a * (t.xi.xx + t.xi.yy), difference = b * (t.xi.yy - t.xi.xx);
   const L half = L(0.5);
-  const Sym3<L> xi{
-      half * (sum - difference), half * (sum + difference), L(0.0), b * t.xi.xy, L(0.0), L(0.0)};
+  const Sym3<L> xi{half * (sum - difference),
+                   half * (sum + difference),
+                   L(0.0),
+                   b * t.xi.xy,
+                   b * t.xi.yz,
+                   b * t.xi.zx};
   const L third = sum * L(1.0 / 3.0);
   const Sym3<L> flow = lambda * plus_sphere(xi, -third);
   increment = L(2.0 / 3.0) * lambda * sqrt(fma(t.modes.A * a, a, t.modes.B * b * b));
@@ -220,8 +227,8 @@ FABRICA_FN Sym3<L> j2_plane_finish(const J2Moduli& m, const Sym3<L>& old, const 
                        t.stress.yy - L(c) * fma(L(nu), flow.xx, flow.yy),
                        L(0.0),
                        t.stress.xy - twice * flow.xy,
-                       t.stress.yz,
-                       t.stress.zx};
+                       t.stress.yz - twice * flow.yz,
+                       t.stress.zx - twice * flow.zx};
   dzz = fma(L(-nu / E), (stress.xx - old.xx) + (stress.yy - old.yy), flow.zz);
   if (back) *back += L(Real(2.0 / 3.0) * m.kinematic) * flow;
   return stress;

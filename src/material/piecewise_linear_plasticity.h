@@ -56,7 +56,8 @@ struct PiecewiseLinearPlasticity {
   template <class L>
   FABRICA_FN Sym3<L> plane_stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point,
                                   State<L>& state, L& dzz) const {
-    const J2Trial<L> trial = j2_plane_trial(moduli, old, strain, no_back<L>());
+    const J2Trial<L> trial =
+        j2_plane_trial<TransverseShear::flows>(moduli, old, strain, no_back<L>());
     const L lambda = flow<true>(trial, plane_flow_strain(strain), point, state);
     L increment;
     const Sym3<L> s =

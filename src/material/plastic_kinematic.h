@@ -5,7 +5,9 @@
 //   Ep d(plastic strain)                                                               (2)
 // r: rate of deformation sqrt(D:D) (VP = 0). VP = 1: Y = SIGY + BETA Ep ep + SIGY (r/C)^(1/P), r
 // the rate of ep. C = SRC, P = SRP; C = 0: no rate effect. A point fails where ep > FS. Return
-// mapping: j2.h. Source: Krieg and Key 1976; Cowper and Symonds 1957.
+// mapping: j2.h. In shells transverse shear is elastic and outside the yield condition, as in
+// published LS-DYNA results (docs/theory/elements/shell.md). Source: Krieg and Key 1976; Cowper and
+// Symonds 1957.
 #include "material/j2.h"
 
 namespace fabrica {
@@ -63,8 +65,11 @@ struct PlasticKinematic {
   template <class L>
   FABRICA_FN Sym3<L> plane_stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point,
                                   State<L>& state, L& dzz) const {
-    const J2Trial<L> trial = j2_plane_trial(moduli, old, strain, state.back);
-    const L lambda = flow<true>(trial, plane_flow_strain(strain), point, state);
+    const J2Trial<L> trial =
+        j2_plane_trial<TransverseShear::elastic>(moduli, old, strain, state.back);
+    Sym3<L> flowing = plane_flow_strain(strain);
+    flowing.yz = flowing.zx = L(0.0);
+    const L lambda = flow<true>(trial, flowing, point, state);
     L increment;
     const Sym3<L> s = j2_plane_finish(moduli, old, trial, lambda, &state.back, increment, dzz);
     finish_point(increment, point, state);

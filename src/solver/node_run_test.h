@@ -19,11 +19,11 @@ struct Run {
   std::vector<Vec3d> extra;  // forces that a test adds to nodes
   double pending_work = 0,
          extra_work = 0;  // by them up to t(n), their half steps as energies have them
-  explicit Run(Mechanism& m_)
+  explicit Run(Mechanism& m_, WallMethod method = WallMethod::impulse)
       : m(m_),
         loads(m_.model, m_.state, *m_.bodies, m_.diagnostics),
         constraints(m_.model, m_.state, m_.diagnostics),
-        walls(m_.model, m_.state, m_.diagnostics),
+        walls(m_.model, m_.state, m_.diagnostics, method),
         damping(m_.model, *m_.bodies),
         extra(m_.model.nodes.size(), Vec3d{}) {}
   void step(double dt) {

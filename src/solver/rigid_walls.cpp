@@ -40,8 +40,9 @@ WallGeometry geometry_of(const RigidWall& w) {
 
 }  // namespace
 
-RigidWalls::RigidWalls(const Model& model, const State& state, Diagnostics& diagnostics)
-    : model_(model) {
+RigidWalls::RigidWalls(const Model& model, const State& state, Diagnostics& diagnostics,
+                       WallMethod method)
+    : model_(model), method_(method) {
   std::size_t most = 0;
   for (int i = 0; i < int(model.rigid_walls.size()); ++i) {
     const RigidWall& w = model.rigid_walls[i];
@@ -147,12 +148,18 @@ Vec3d RigidWalls::driven_velocity(const Wall& wall, const State& state) const {
   return ((curve_value(c.x, c.y, end) - dot(wall.displacement, n)) / state.dt) * n;
 }
 
-// Whether the node is behind the wall after the step; clearance: lower bound of its distance at
-// t(n).
+// Whether the wall acts on the node; clearance: lower bound of its distance at t(n).
 bool RigidWalls::find(const Wall& wall, const WallGeometry& g, const State& state, int node,
                       double& clearance, Hit& hit) const {
+  clearance = std::min(clearance, wall_clearance(g, state.nodes[node].x));
+  const bool back = method_ == WallMethod::constraint && g.shape == WallShape::plane;
+  return back ? find_behind(wall, g, state, node, hit) : find_ahead(wall, g, state, node, hit);
+}
+
+// Whether the node is behind the wall after the step.
+bool RigidWalls::find_ahead(const Wall& wall, const WallGeometry& g, const State& state, int node,
+                            Hit& hit) const {
   const NodeMotion& a = state.nodes[node];
-  clearance = std::min(clearance, wall_clearance(g, a.x));
   const Vec3d move = state.dt * (a.v - wall.velocity);
   const WallPoint next = wall_point(g, a.x + move);
   if (next.distance >= 0 || !next.on_wall) return false;
@@ -166,6 +173,24 @@ bool RigidWalls::find(const Wall& wall, const WallGeometry& g, const State& stat
   if (added <= 0) return false;
   const Vec3d before = a.v - (state.mean_dt() * a.inverse_mass) * state.force[node];
   hit = {node, next.normal, before, added, deep};
+  return true;
+}
+
+// Whether the node came behind the plane, or farther behind it, in the last step.
+bool RigidWalls::find_behind(const Wall& wall, const WallGeometry& g, const State& state, int node,
+                             Hit& hit) const {
+  const NodeMotion& a = state.nodes[node];
+  const WallPoint now = wall_point(g, a.x);
+  if (now.distance >= 0 || !now.on_wall) return false;
+  const Vec3d before = a.v - (state.mean_dt() * a.inverse_mass) * state.force[node];
+  const double came = -dot(before - wall.velocity, now.normal);
+  if (came <= 0) return false;
+  const double way = came * state.dt_previous;
+  // a finite plane does not catch what came from behind
+  const bool deep = now.distance < -way * (1 + 1e-9) - 1e-9 * norm(a.x - g.origin);
+  if (deep && (g.length_l > 0 || g.length_m > 0)) return false;
+  const double added = -dot(a.v - wall.velocity, now.normal);
+  hit = {node, now.normal, before, added, deep, came, std::min(-now.distance, way)};
   return true;
 }
 
@@ -211,8 +236,9 @@ void RigidWalls::push(Wall& wall, State& state, Team& team, double old_speed) {
       Vec3d dv = dvn * h.normal;
       const Vec3d rel = node.v - wall.velocity;
       const Vec3d slip = rel - dot(rel, h.normal) * h.normal;
-      dv -= friction_cut(wall, slip, std::max(dvn, 0.0));
+      dv -= friction_cut(wall, slip, std::clamp(dvn, 0.0, h.braked));
       node.v += dv;
+      node.x += h.back * h.normal;
       s.impulse -= node.mass * dv;
       s.before += node.mass * dot(dv, h.v_before);
       s.after += node.mass * dot(dv, node.v);
@@ -313,6 +339,7 @@ void RigidWalls::forces(State& state, Team& team, double max_speed) {
 }
 
 void RigidWalls::save(std::ostream& out) const {
+  write_value(out, method_);
   for (const Wall& w : walls_) {
     for (const Vec3d* v : {&w.displacement, &w.velocity, &w.force, &w.penalty})
       write_value(out, *v);
@@ -326,6 +353,7 @@ void RigidWalls::save(std::ostream& out) const {
 }
 
 void RigidWalls::load(std::istream& in) {
+  read_value(in, method_);
   for (Wall& w : walls_) {
     for (Vec3d* v : {&w.displacement, &w.velocity, &w.force, &w.penalty}) read_value(in, *v);
     read_vector(in, w.free.clearance);

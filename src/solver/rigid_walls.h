@@ -5,7 +5,9 @@
 //   m (v+ - v) = J,  J.n = m dv_n,  |J_t| = min(m |v_t|, mu m dv_n) (mu >= 1: stick)
 //   moving wall: V+ = (M V + sum m v_n) / (M + sum m)
 // Nodes of rigid bodies get a penalty force k = s 0.1 m/dt^2 (s: RWPNAL, 1 where the deck gives 0).
-// See docs/theory/rigid_walls.md.
+// WallMethod::constraint stops free nodes at planes a step later, as LS-DYNA's walls are described
+// to: a node found behind the plane is put back on it and loses its velocity along the normal, and
+// friction knows only the velocity with which it came. See docs/theory/rigid_walls.md.
 #include <cstdint>
 #include <istream>
 #include <ostream>
@@ -19,10 +21,13 @@
 
 namespace fabrica {
 
+enum class WallMethod { impulse, constraint };
+
 class RigidWalls {
  public:
   // owners of nodes must be known
-  RigidWalls(const Model& model, const State& state, Diagnostics& diagnostics);
+  RigidWalls(const Model& model, const State& state, Diagnostics& diagnostics,
+             WallMethod method = WallMethod::impulse);
   // Adds penalty forces on nodes of rigid bodies to state.interaction; before assembly. max_speed:
   // a bound of nodal speeds at t(n-1/2) and t(n+1/2) so far; negative: computed here.
   void forces(State& state, Team& team, double max_speed = -1);
@@ -52,6 +57,8 @@ class RigidWalls {
     Vec3d normal, v_before;  // v(n-1/2)
     double added;            // least velocity to add along the normal at the wall's old velocity
     bool deep;               // behind before the step
+    double braked = 1e300;   // most of that velocity that friction may count
+    double back = 0;         // way along the normal by which the node is put back
   };
   struct Side {  // nodes in chunks with bounds of their distance
     std::vector<int> nodes;
@@ -79,11 +86,16 @@ class RigidWalls {
   Vec3d driven_velocity(const Wall& wall, const State& state) const;
   bool find(const Wall& wall, const WallGeometry& g, const State& state, int node,
             double& clearance, Hit& hit) const;
+  bool find_ahead(const Wall& wall, const WallGeometry& g, const State& state, int node,
+                  Hit& hit) const;
+  bool find_behind(const Wall& wall, const WallGeometry& g, const State& state, int node,
+                   Hit& hit) const;
   void detect(Wall& wall, const WallGeometry& g, State& state, Team& team, double speed);
   void push(Wall& wall, State& state, Team& team, double old_speed);
   void penalty(Wall& wall, State& state, Team& team, double speed);
 
   const Model& model_;
+  WallMethod method_;
   std::vector<Wall> walls_;
   std::vector<std::vector<Hit>> hits_;  // per chunk
   std::vector<Sums> sums_;

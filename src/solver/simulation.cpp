@@ -78,7 +78,7 @@ Simulation::Simulation(const Model& model, const RunOptions& options, Diagnostic
   rigid_bodies_->finish(state_, diagnostics);
   joints_ = std::make_unique<Joints>(model, *rigid_bodies_, diagnostics);
   node_constraints_ = std::make_unique<NodeConstraints>(model, state_, diagnostics);
-  rigid_walls_ = std::make_unique<RigidWalls>(model, state_, diagnostics);
+  rigid_walls_ = std::make_unique<RigidWalls>(model, state_, diagnostics, options.walls);
   loads_ = std::make_unique<Loads>(model, state_, *rigid_bodies_, diagnostics);
   damping_ = std::make_unique<MassDamping>(model, *rigid_bodies_);
   discrete_ = std::make_unique<DiscreteElements>(model, state_, diagnostics);

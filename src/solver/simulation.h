@@ -28,6 +28,7 @@ struct RunOptions {
   int threads = 1;
   double end_time = 0;  // 0: the deck's
   bool energy_audit = false;
+  WallMethod walls = WallMethod::impulse;  // a restart keeps that of its file
 };
 
 // Asked at t(n) of every step; when wants() says yes, sample() is called once forces, energies,

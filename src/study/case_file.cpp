@@ -101,6 +101,7 @@ void read_what_runs(Fields& f, Case& c) {
   if (c.end_time < 0) f.fail("end_time", "is negative", "Give the time at which the run ends");
   c.time_unit = read_time_unit(f);
   c.allow_unsupported = f.flag("allow_unsupported", false);
+  c.walls = read_walls(f);
   c.slow = f.flag("slow", false);
   c.parameters = literals(f.table("parameters"));
   c.paths = literals(f.table("paths"));
@@ -123,6 +124,12 @@ void need_files(const Fields& f, const Case& c) {
 }
 
 }  // namespace
+
+std::string read_walls(Fields& f) {
+  const std::string walls = f.text("walls", "impulse");
+  f.one_of("walls", walls, {"impulse", "constraint"});
+  return walls;
+}
 
 Case read_case(const std::string& folder) {
   const std::string file = (fs::path(folder) / "case.toml").string();

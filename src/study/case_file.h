@@ -9,6 +9,8 @@
 
 namespace fabrica::study {
 
+class Fields;
+
 // A curve of the result that is drawn and, where a reference curve is at hand, rated.
 struct SignalSpec {
   std::string name;
@@ -73,6 +75,7 @@ struct Case {
   std::string time_unit = "ms";
   double end_time = 0;  // 0: the deck's
   bool allow_unsupported = false;
+  std::string walls = "impulse";                  // `fabrica run --walls`
   bool slow = false;                              // runs only when named, or with --slow
   std::map<std::string, std::string> parameters;  // *PARAMETER values
   std::map<std::string, std::string> paths;       // {name} in file names; what the folder must hold
@@ -83,6 +86,9 @@ struct Case {
 
   bool runs() const { return !deck.empty() || !body.empty(); }
 };
+
+// Reads "walls" of a case or a plan.
+std::string read_walls(Fields& f);
 
 // Reads FOLDER/case.toml. Throws StudyError with file, line, key and remedy.
 Case read_case(const std::string& folder);

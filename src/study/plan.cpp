@@ -160,6 +160,7 @@ void read_base(Fields& f, Plan& plan, const std::string& folder,
   c.end_time = f.number("end_time", 0);
   c.time_unit = read_time_unit(f);
   c.allow_unsupported = f.flag("allow_unsupported", false);
+  c.walls = read_walls(f);
 }
 
 }  // namespace

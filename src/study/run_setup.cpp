@@ -69,9 +69,9 @@ RunSetup set_up_run(const Case& c, const std::string& folder, const std::string&
   }
   setup.content = inspect_deck(setup.deck);
   for (const auto& [name, value] : c.parameters) need_parameter(setup.content, name, c.file, 0);
-  setup.fingerprint =
-      fingerprint(setup.content.hash,
-                  {fmt::format("{}", c.end_time), c.allow_unsupported ? "allow" : "", resolution});
+  setup.fingerprint = fingerprint(
+      setup.content.hash,
+      {fmt::format("{}", c.end_time), c.allow_unsupported ? "allow" : "", resolution, c.walls});
   return setup;
 }
 
@@ -83,6 +83,7 @@ Command run_command(const Case& c, const std::string& deck, const std::string& f
   if (c.end_time > 0)
     command.arguments.insert(command.arguments.end(), {"--until", fmt::format("{}", c.end_time)});
   if (c.allow_unsupported) command.arguments.push_back("--allow-unsupported");
+  command.arguments.insert(command.arguments.end(), {"--walls", c.walls});
   return command;
 }
 
