@@ -128,7 +128,7 @@ int body_command(const BodyCommand& c) {
     for (const std::string& name : body::bone_names()) fmt::print("{}\n", name);
     return 0;
   }
-  if (c.random > 0) return draw_bodies(c.random, c.resolution, !c.no_joints);
+  if (c.random > 0) return draw_bodies(c.random, c.resolution, !c.no_joints, c.bones);
   const std::clock_t start = std::clock();
   const Trial trial(c);
   const body::Body made = trial.build(options_of(c));

@@ -1,6 +1,7 @@
 #include "app/body_draws.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <random>
@@ -45,14 +46,16 @@ body::BodyOptions drawn_body(int number) {
   return next_body(random);
 }
 
-int draw_bodies(int count, const std::string& resolution, bool joints) {
+int draw_bodies(int count, const std::string& resolution, bool joints,
+                const std::vector<std::string>& bones) {
   std::mt19937_64 random = first_draw();
-  int failures = 0, good = 0;
+  int failures = 0, good = 0, whole = 0;
   double worst = 1;
   for (int i = 1; i <= count; ++i) {
     body::BodyOptions options = next_body(random);
     options.resolution = body::resolution_named(resolution);
     options.joints = joints;
+    options.only = bones;
     const std::string who =
         fmt::format("{:3}: {:.0f} mm {:.0f} kg", i, options.subject.stature, options.subject.mass);
     try {
@@ -61,8 +64,12 @@ int draw_bodies(int count, const std::string& resolution, bool joints) {
       worst = std::min(worst, q.min_jacobian);
       good += q.min_jacobian >= 0.30;
       failures += q.min_jacobian <= 0;
-      fmt::print("{}: {} bricks, scaled Jacobian {:.2f} ({}), 99 % above {:.2f}{}\n", who, q.bricks,
-                 q.min_jacobian, q.where_jacobian, q.p1_jacobian,
+      const std::vector<std::string> alone =
+          joints ? body::unconnected(made.bones, made.between) : std::vector<std::string>{};
+      whole += alone.empty();
+      fmt::print("{}: {} bricks, scaled Jacobian {:.2f} ({}), 99 % above {:.2f}{}{}\n", who,
+                 q.bricks, q.min_jacobian, q.where_jacobian, q.p1_jacobian,
+                 alone.empty() ? "" : fmt::format(", nothing connects {}", fmt::join(alone, " ")),
                  q.min_jacobian <= 0 ? " FAILED" : "");
     } catch (const body::BodyError& e) {
       ++failures;
@@ -72,6 +79,7 @@ int draw_bodies(int count, const std::string& resolution, bool joints) {
   fmt::print(
       "{} of {} bodies made with positive Jacobians, {} of them at least 0.30; smallest {:.2f}\n",
       count - failures, count, good, worst);
+  if (joints) fmt::print("{} of them have no bone or piece that nothing connects\n", whole);
   return failures ? 1 : 0;
 }
 

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <set>
+
+#include "body/joints/bone_surface.h"
 
 namespace fabrica::body {
 
@@ -65,10 +66,9 @@ class Hull {
 };
 
 std::vector<Point> surface_points(const PlacedBone& bone) {
-  std::set<int> nodes;
-  for (const auto& quad : bone.mesh.surface) nodes.insert(quad.begin(), quad.end());
+  const BoneSurface surface(bone.nodes, bone.mesh.surface);
   std::vector<Point> points;
-  for (const int n : nodes) points.push_back(bone.nodes[std::size_t(n)]);
+  for (const int n : surface.nodes()) points.push_back(bone.nodes[std::size_t(n)]);
   return points;
 }
 

@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <memory>
 #include <optional>
 #include <set>
 
-#include "body/joints/bone_surface.h"
+#include "body/joints/bone_surfaces.h"
 #include "body/joints/joint_law.h"
 #include "body/joints/ligaments.h"
 #include "body/joints/meniscus.h"
@@ -27,6 +26,10 @@ constexpr double under_meniscus = 1;     // [mm] of a layer that leaves room for
 constexpr double least_jacobian = 0.36;  // of its bricks
 constexpr double capsule_length = 8;     // [mm] reference length of capsules without a row
 
+// What the nearest point of the other bone faces: its quad's normal, or the way back from it, which
+// at an edge is a normal between those of both sides.
+enum class Facing { quad, edge };
+
 // faces of one bone that look at another
 struct Patch {
   std::vector<int> quads;  // of the bone's surface
@@ -36,13 +39,12 @@ struct Patch {
 class ArticulationMaker {
  public:
   ArticulationMaker(const std::vector<PlacedBone>& bones, BetweenBones& between)
-      : bones_(bones), between_(between), surfaces_(bones.size()) {}
+      : bones_(bones), between_(between), surface_(bones) {}
   ArticulationReport add(const Articulation& joint);
 
  private:
-  const BoneSurface& surface(int bone);
   bool belongs(const Articulation& joint, int bone, const Point& centre) const;
-  Patch patch(const Articulation& joint, int bone, int other, double reach);
+  Patch patch(const Articulation& joint, int bone, int other, double reach, Facing facing);
   std::vector<std::array<PieceNode, 4>> layer(const Articulation& joint, int bone, int other,
                                               const Patch& patch, double cartilage,
                                               double& gap_left);
@@ -60,15 +62,9 @@ class ArticulationMaker {
 
   const std::vector<PlacedBone>& bones_;
   BetweenBones& between_;
-  std::vector<std::unique_ptr<BoneSurface>> surfaces_;
+  BoneSurfaces surface_;
   std::set<std::pair<int, int>> tied_;  // bone, node
 };
-
-const BoneSurface& ArticulationMaker::surface(int index) {
-  auto& kept = surfaces_[std::size_t(index)];
-  if (!kept) kept = std::make_unique<BoneSurface>(bone(index).nodes, bone(index).mesh.surface);
-  return *kept;
-}
 
 // Facets: behind the body and beside the midline; arches: behind the body. Other joints take every
 // face.
@@ -82,7 +78,8 @@ bool ArticulationMaker::belongs(const Articulation& joint, int index, const Poin
   return local.x < behind * bone(index).mesh.scale.x && beside > 4;
 }
 
-Patch ArticulationMaker::patch(const Articulation& joint, int index, int other, double reach) {
+Patch ArticulationMaker::patch(const Articulation& joint, int index, int other, double reach,
+                               Facing facing) {
   Patch found;
   const PlacedBone& here = bone(index);
   for (std::size_t q = 0; q < here.mesh.surface.size(); ++q) {
@@ -90,9 +87,11 @@ Patch ArticulationMaker::patch(const Articulation& joint, int index, int other, 
     const Point x[4] = {here.nodes[std::size_t(s[0])], here.nodes[std::size_t(s[1])],
                         here.nodes[std::size_t(s[2])], here.nodes[std::size_t(s[3])]};
     const Point centre = 0.25 * (x[0] + x[1] + x[2] + x[3]);
-    const SurfacePoint there = surface(other).nearest(centre, reach);
+    const SurfacePoint there = surface_[other].nearest(centre, reach);
     if (there.quad < 0 || !belongs(joint, index, centre)) continue;
-    if (dot(quad_normal(x[0], x[1], x[2], x[3]), there.normal) > -0.4) continue;
+    const Point back =
+        facing == Facing::edge && there.distance > 0 ? unit(centre - there.point) : there.normal;
+    if (dot(quad_normal(x[0], x[1], x[2], x[3]), back) > -0.4) continue;
     found.quads.push_back(int(q));
     found.gap = std::min(found.gap, there.distance);
   }
@@ -160,7 +159,7 @@ std::vector<std::array<PieceNode, 4>> ArticulationMaker::layer(const Articulatio
   for (auto& [node, normal] : normals) {
     const Point& p = here.nodes[std::size_t(node)];
     normal = (1 / norm(normal)) * normal;
-    const SurfacePoint there = surface(other).nearest(p, 4 * joint.reach);
+    const SurfacePoint there = surface_[other].nearest(p, 4 * joint.reach);
     const double distance = there.quad < 0 ? 2 * joint.reach : there.distance;
     const double room = 0.5 * (distance - contact_gap);
     if (room < thinnest) {
@@ -241,8 +240,9 @@ void ArticulationMaker::sliding(const Articulation& joint, const Patch& a, const
 // of b that lie nearest to them.
 void ArticulationMaker::joined(const Articulation& joint, ArticulationReport& report) {
   std::vector<std::pair<double, int>> near;
-  for (int node : surface(joint.a).nodes()) {
-    const SurfacePoint there = surface(joint.b).nearest(bone(joint.a).nodes[std::size_t(node)], 30);
+  for (int node : surface_[joint.a].nodes()) {
+    const SurfacePoint there =
+        surface_[joint.b].nearest(bone(joint.a).nodes[std::size_t(node)], 30);
     if (there.quad >= 0) near.emplace_back(there.distance, node);
   }
   std::sort(near.begin(), near.end());
@@ -254,7 +254,7 @@ void ArticulationMaker::joined(const Articulation& joint, ArticulationReport& re
     if (i >= 6 && distance > near.front().first + 3) break;
     if (!tied_.insert({joint.a, node}).second) continue;  // a node follows one surface
     tie.a.push_back(bone_node(bones_, joint.a, node));
-    const int quad = surface(joint.b).nearest(bone(joint.a).nodes[std::size_t(node)], 30).quad;
+    const int quad = surface_[joint.b].nearest(bone(joint.a).nodes[std::size_t(node)], 30).quad;
     for (int n : bone(joint.b).mesh.surface[std::size_t(quad)]) around.insert(n);
   }
   const auto& quads = bone(joint.b).mesh.surface;
@@ -327,7 +327,7 @@ void ArticulationMaker::capsule(const Articulation& joint, const Patch& a, const
   Point centre{0, 0, 0}, normal{0, 0, 0};
   for (int n : nodes_a) {
     centre += (1.0 / double(nodes_a.size())) * bone(joint.a).nodes[std::size_t(n)];
-    normal += surface(joint.a).node_normal(n);
+    normal += surface_[joint.a].node_normal(n);
   }
   normal = norm(normal) > 1e-9 ? (1 / norm(normal)) * normal : Point{0, 0, 1};
   const Point first = std::abs(normal.x) < 0.7 ? Point{1, 0, 0} : Point{0, 1, 0};
@@ -373,14 +373,19 @@ ArticulationReport ArticulationMaker::add(const Articulation& joint) {
     joined(joint, report);
     return report;
   }
-  // bones that stand farther apart than the table says are looked for farther
   Patch a, b;
-  for (double factor : {1.0, 1.5, 2.0, 3.0}) {
+  const auto look = [&](double factor, Facing facing) {
     report.reach = factor * joint.reach;
-    a = patch(joint, joint.a, joint.b, report.reach);
-    b = patch(joint, joint.b, joint.a, report.reach);
-    if (a.quads.size() >= 2 && b.quads.size() >= 2) break;
-  }
+    a = patch(joint, joint.a, joint.b, report.reach, facing);
+    b = patch(joint, joint.b, joint.a, report.reach, facing);
+    return a.quads.size() >= 2 && b.quads.size() >= 2;
+  };
+  // Bones that stand farther apart than the table says are looked for farther. The round head of a
+  // bent finger is a few coarse faces, which may all look past the other bone: their edges do not.
+  const auto found = [&](Facing facing) {
+    return look(1, facing) || look(1.5, facing) || look(2, facing) || look(3, facing);
+  };
+  if (!found(Facing::quad) && (a.quads.empty() || b.quads.empty())) found(Facing::edge);
   report.faces_a = int(a.quads.size()), report.faces_b = int(b.quads.size());
   report.gap = std::min(a.gap, b.gap);
   if (a.quads.empty() || b.quads.empty()) {

@@ -112,23 +112,6 @@ std::vector<std::vector<Touch>> groups_of(const std::vector<Touch>& touches,
   return list;
 }
 
-// Other bones that a bone or its mirror image touches, as planes that its nodes stay in front of:
-// the image gets its nodes, and warped faces of the midline may lie otherwise on its side.
-std::vector<PlaneNode> planes_of(const std::vector<Touch>& touches, int index, int twin,
-                                 const std::vector<PlacedBone>& bones) {
-  std::vector<PlaneNode> planes;
-  for (const Touch& t : touches) {
-    if (t.a != index && t.a != twin) continue;
-    Point place = t.gap * t.normal;
-    for (std::size_t i = 0; i < 4; ++i)
-      place += t.weight[i] * bones[std::size_t(t.b)].nodes[std::size_t(t.quad[i])];
-    const bool image = t.a == twin;
-    planes.push_back(
-        {t.node, image ? mirror(place) : place, image ? mirror(t.normal) : t.normal, 2000, true});
-  }
-  return planes;
-}
-
 void polish_all(std::vector<PlacedBone>& bones, const std::vector<Touch>& touches,
                 const Mirror& mirrors, Touches& search) {
   for (const int b : bones_of(touches, mirrors)) {

@@ -10,6 +10,7 @@
 #include "body/joints/ligament_law.h"
 #include "body/joints/mend.h"
 #include "body/joints/symphysis.h"
+#include "body/joints/touch.h"
 #include "body/mesh/quality.h"
 #include "body/tables.h"
 
@@ -138,16 +139,29 @@ TEST_CASE("a bone that others do not hold moves whole instead of being pressed s
   CHECK(volume == Approx(125).epsilon(0.03));
 }
 
-// The corner of a fingertip reaches into the side of the bone before it, whose face would push it
-// off sideways: it moves along the line through their middles.
+// The edge of a fingertip reaches into an edge of the bone before it: one node of that, (6, 6, 3),
+// and three of its own, (4.6, 4.8, z), stand inside. It moves from their middle to its own.
 TEST_CASE("a phalanx is moved along its ray") {
   std::vector<PlacedBone> bones{block("hand_phalanx2_middle", {0, 0, 0}, 6, 2),
                                 block("hand_phalanx2_distal", {4.6, 4.8, 0.5}, 5, 2)};
-  const Point line{4.6 + 2.5 - 3, 4.8 + 2.5 - 3, 0};
+  const Point line{7.1 - (6 + 3 * 4.6) / 4, 7.3 - (6 + 3 * 4.8) / 4, 0};
   clear_bones(bones);
   const Point moved = bones[1].placement.t;
   CHECK(norm(moved) > 0.3);
   CHECK(norm(cross(moved, line)) < 1e-6 * norm(moved) * norm(line));
+}
+
+// A fingertip narrower than the bone before it stands 3.6 mm deep in its end of 6: its nodes are
+// past the middle and nearest to the far side or to a side. It leaves by the end all the same.
+TEST_CASE("a phalanx past the middle of the bone before it leaves by its end") {
+  std::vector<PlacedBone> bones{block("hand_phalanx2_middle", {0, 0, 0}, 6, 2),
+                                block("hand_phalanx2_distal", {2.4, 0.5, 0.5}, 5, 2)};
+  const Surfaces surfaces(bones);
+  CHECK(surfaces.way_out(1, surfaces.overlapping(1, 0, 8), {1, 0, 0}, 8) == Approx(3.6));
+  const ClearanceReport report = clear_bones(bones);
+  CHECK(report.left.empty());
+  CHECK(bones[1].placement.t.x == Approx(2));  // the most; the rest gives way elastically
+  CHECK(std::abs(bones[1].placement.t.y) + std::abs(bones[1].placement.t.z) < 0.01);
 }
 
 // The end of a cartilage stands 4 mm deep in that of its rib and 1 mm inside of a side, so that
@@ -194,6 +208,39 @@ TEST_CASE("a moved bone gets the size of its shells back while its surface stays
     if (std::max(std::abs(p.x - 6), std::abs(p.y - 6)) < 3 && p.z > 11)
       CHECK(std::abs(cube.nodes[n].z - 12) < 0.4);
   }
+}
+
+// A node of the left bone stands 0.5 mm before the inner side of a block on the midline, its image
+// on the right, which gets its place, before nothing: what the left one asks for counts, mirrored.
+TEST_CASE("a right bone stays in front of what its image touches") {
+  std::vector<PlacedBone> bones{block("rib3", {0, -9, 0}, 4, 1), block("rib3", {0, 5, 0}, 4, 1),
+                                block("L3", {0, -4.5, 0}, 9, 1)};
+  const std::array<int, 4> side{2, 3, 7, 6};  // y = 4.5
+  const std::vector<Touch> touches{{1, 5, 2, side, {0.25, 0.25, 0.25, 0.25}, {0, 1, 0}, 0.5, 1.2}};
+  CHECK(planes_of(touches, 0, -1, bones).empty());
+  const auto planes = planes_of(touches, 0, 1, bones);
+  REQUIRE(planes.size() == 1);
+  CHECK(planes[0].node == 5);
+  CHECK(norm(planes[0].point - Point{4.5, -4.5 - 1.2, 4.5}) < 1e-12);
+  CHECK(norm(planes[0].normal - Point{0, -1, 0}) < 1e-12);
+}
+
+// Two cubes of 12 mm whose faces reach 3 mm into one another and that nothing moves whole, of
+// bricks of 3 mm at coarse and of 0.5 at fine: at rest they are the same elastic bodies under the
+// same push, and as large as one another to 0.5 % whatever their bricks.
+TEST_CASE("bones of fine meshes keep their volume where they give way") {
+  const auto cleared = [](Resolution resolution, int n) {
+    std::vector<PlacedBone> bones{block("L3", {0, 0, 0}, 12, n), block("T3", {0, 0, 9}, 12, n)};
+    for (PlacedBone& bone : bones) bone.mesh.resolution = resolution;
+    clear_bones(bones);
+    std::array<double, 2> volume{0, 0};
+    for (std::size_t b = 0; b < 2; ++b)
+      for (const auto& brick : bones[b].mesh.bricks)
+        volume[b] += volume_of(corners_of(bones[b].nodes, brick));
+    return volume;
+  };
+  const auto coarse = cleared(Resolution::coarse, 4), fine = cleared(Resolution::fine, 24);
+  for (std::size_t b = 0; b < 2; ++b) CHECK(std::abs(fine[b] - coarse[b]) < 0.005 * 12 * 12 * 12);
 }
 
 // Two blocks 9 mm apart: 5 mm after, the far halves as they were, mirror images to the bit.

@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
 #include <set>
 
-#include "body/joints/bone_surface.h"
+#include "body/joints/bone_surfaces.h"
 #include "body/joints/piece_builder.h"
 #include "body/tables.h"
 
@@ -24,18 +23,12 @@ struct End {
 class LigamentMaker {
  public:
   LigamentMaker(const std::vector<PlacedBone>& bones, BetweenBones& between)
-      : bones_(bones), between_(between), surfaces_(bones.size()) {}
+      : bones_(bones), between_(between), surface_(bones) {}
 
   void add(const Table& table, int row, Side side);
   std::vector<LigamentReport> reports;
 
  private:
-  const BoneSurface& surface(int bone) {
-    auto& kept = surfaces_[std::size_t(bone)];
-    const PlacedBone& b = bones_[std::size_t(bone)];
-    if (!kept) kept = std::make_unique<BoneSurface>(b.nodes, b.mesh.surface);
-    return *kept;
-  }
   int bone_of(std::string name, Side side) const {
     if (name.ends_with("_L")) {
       name.resize(name.size() - 2);
@@ -48,7 +41,7 @@ class LigamentMaker {
 
   const std::vector<PlacedBone>& bones_;
   BetweenBones& between_;
-  std::vector<std::unique_ptr<BoneSurface>> surfaces_;
+  BoneSurfaces surface_;
 };
 
 End LigamentMaker::end(const Table& table, int row, Side side, const char* number) const {
@@ -118,9 +111,9 @@ void LigamentMaker::add(const Table& table, int row, Side side) {
   // across the ligament, along the bone it starts from
   const Point along = to.place - from.place;
   double start_distance, end_distance;
-  const int start_node = surface(from.bone).nearest_node(from.place, start_distance);
-  surface(to.bone).nearest_node(to.place, end_distance);
-  const Point& normal = surface(from.bone).node_normal(start_node);
+  const int start_node = surface_[from.bone].nearest_node(from.place, start_distance);
+  surface_[to.bone].nearest_node(to.place, end_distance);
+  const Point& normal = surface_[from.bone].node_normal(start_node);
   Point lateral = cross(norm(along) > 1 ? along : Point{0, 0, 1}, normal);
   lateral = norm(lateral) > 1e-6 ? (1 / norm(lateral)) * lateral : Point{0, 1, 0};
   const double breadth = table.number(row, "spread") * bone_a.mesh.scale.y;
@@ -130,7 +123,7 @@ void LigamentMaker::add(const Table& table, int row, Side side) {
   const std::string side_name = name_of(table.text(row, "side") == "M" ? Side::midline : side);
   report.name = fmt::format("{}.{}.{}", name_of(bone_a.region), side_name, table.text(row, "name"));
   report.distance = std::max(start_distance, end_distance);
-  tie_strands(builder, surface(from.bone), surface(to.bone), from, to,
+  tie_strands(builder, surface_[from.bone], surface_[to.bone], from, to,
               spread(from.place, lateral, strands, breadth),
               spread(to.place, lateral, strands, breadth));
   if (report.distance > farthest && table.text(row, "attach") != "muscle")

@@ -30,4 +30,20 @@ void mend(const BoneMesh& mesh, std::vector<Point>& nodes, bool own, const BoneS
   polish(problem, nodes, options);
 }
 
+std::vector<PlaneNode> planes_of(const std::vector<Touch>& touches, int bone, int twin,
+                                 const std::vector<PlacedBone>& bones) {
+  constexpr double weight = 2000;
+  std::vector<PlaneNode> planes;
+  for (const Touch& t : touches) {
+    if (t.a != bone && t.a != twin) continue;
+    Point place = t.gap * t.normal;
+    for (std::size_t i = 0; i < 4; ++i)
+      place += t.weight[i] * bones[std::size_t(t.b)].nodes[std::size_t(t.quad[i])];
+    const bool image = t.a == twin;
+    planes.push_back(
+        {t.node, image ? mirror(place) : place, image ? mirror(t.normal) : t.normal, weight, true});
+  }
+  return planes;
+}
+
 }  // namespace fabrica::body

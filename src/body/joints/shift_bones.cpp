@@ -11,6 +11,7 @@ namespace {
 
 constexpr double most = 2;        // [mm] shift of a bone against what it hangs on
 constexpr double most_free = 4;   // [mm] of the scapula, which muscle alone parts from the ribs
+constexpr double ray_reach = 8;   // [mm] deeper is no overlap of two ends
 constexpr double most_gap = 0.1;  // [mm] that is asked for here: the rest gives way elastically
 constexpr double softness = 0.1;  // s of (1)
 constexpr int sweeps = 8;
@@ -81,7 +82,7 @@ int depth_of(std::string bone) {
 // a bone and all that hangs on it
 struct Group {
   int root;
-  int ray_from;  // of a phalanx: the bone that it prolongs; else -1
+  int ray_from;  // of a phalanx: the bone before it; else -1
   std::vector<int> bones;
   std::vector<char> member;
 };
@@ -110,10 +111,26 @@ std::vector<Group> groups_of(const std::vector<PlacedBone>& bones) {
   return groups;
 }
 
-// (1) for one group. A phalanx moves along its ray alone: the ends of two bones in line lean
-// against each other, and free to choose one would slip off the other sideways.
+// A phalanx moves along itself alone, from where it meets the bone before it, until no node of
+// either is in the other. The ends of two bones lean against each other: free to choose one would
+// slip off the other sideways, and what is past the middle of a narrow head would leave by its far
+// side.
+Point along_ray(const Group& group, const std::vector<PlacedBone>& bones,
+                const Surfaces& surfaces) {
+  const std::vector<Touch> overlapping =
+      surfaces.overlapping(group.root, group.ray_from, ray_reach);
+  if (overlapping.empty()) return {0, 0, 0};
+  std::vector<Point> meeting;
+  for (const Touch& t : overlapping)
+    meeting.push_back(bones[std::size_t(t.a)].nodes[std::size_t(t.node)]);
+  const Point out = unit(middle_of(bones[std::size_t(group.root)].nodes) - middle_of(meeting));
+  return (surfaces.way_out(group.root, overlapping, out, ray_reach) + most_gap) * out;
+}
+
+// (1) for one group
 Point wish_of(const Group& group, const std::vector<PlacedBone>& bones, const Surfaces& surfaces,
               const std::vector<NearPair>& pairs) {
+  if (group.ray_from >= 0) return along_ray(group, bones, surfaces);
   Mat3d m{};
   Point rhs{0, 0, 0};
   int count = 0;
@@ -130,12 +147,6 @@ Point wish_of(const Group& group, const std::vector<PlacedBone>& bones, const Su
   }
   if (count == 0) return {0, 0, 0};
   for (int i = 0; i < 3; ++i) m(i, i) += softness * count;
-  if (group.ray_from >= 0) {
-    const Point chord = middle_of(bones[std::size_t(group.root)].nodes) -
-                        middle_of(bones[std::size_t(group.ray_from)].nodes);
-    const Point along = (1.0 / norm(chord)) * chord;
-    return (dot(rhs, along) / dot(along, m * along)) * along;
-  }
   if (bones[std::size_t(group.root)].side == Side::midline) {  // stays in the plane of symmetry
     for (int i = 0; i < 3; ++i)
       if (i != 1) m(1, i) = m(i, 1) = 0;

@@ -42,15 +42,6 @@ bool boxes_meet(const BoneSurface& a, const BoneSurface& b, double gap) {
 
 }  // namespace
 
-Surfaces::Surfaces(const std::vector<PlacedBone>& bones) : bones_(bones), surfaces_(bones.size()) {
-  for (int i = 0; i < int(bones.size()); ++i) renew(i);
-}
-
-void Surfaces::renew(int bone) {
-  const PlacedBone& b = bones_[std::size_t(bone)];
-  surfaces_[std::size_t(bone)] = std::make_unique<BoneSurface>(b.nodes, b.mesh.surface);
-}
-
 std::vector<NearPair> Surfaces::near(const std::vector<Articulation>& joints) const {
   std::map<std::pair<int, int>, const Articulation*> joint_of;
   for (const Articulation& joint : joints)
@@ -88,13 +79,19 @@ void Surfaces::collect(const NearPair& pair, double margin, double reach,
   }
 }
 
-// [mm] how far the overlapping nodes have to go along `axis`, those of b against it; at most reach
-double Surfaces::way_out(const NearPair& pair, const std::vector<Touch>& overlapping,
-                         const Point& axis, double reach) const {
+std::vector<Touch> Surfaces::overlapping(int a, int b, double reach) const {
+  std::vector<Touch> list;
+  collect({a, b, 0, true}, 0, reach, list);
+  collect({b, a, 0, true}, 0, reach, list);
+  return list;
+}
+
+double Surfaces::way_out(int a, const std::vector<Touch>& overlapping, const Point& axis,
+                         double reach) const {
   double way = 0;
   for (const Touch& t : overlapping) {
     const Point& p = bones_[std::size_t(t.a)].nodes[std::size_t(t.node)];
-    const SurfacePoint exit = (*this)[t.b].hit(p, (t.a == pair.a ? 1.0 : -1.0) * axis, reach);
+    const SurfacePoint exit = (*this)[t.b].hit(p, (t.a == a ? 1.0 : -1.0) * axis, reach);
     way = std::max(way, exit.quad < 0 ? reach : exit.distance);
   }
   return way;
@@ -114,7 +111,7 @@ void Surfaces::part_along_axis(const NearPair& pair, double reach, std::vector<T
   const std::size_t stride = std::max<std::size_t>(overlapping.size() / choices, 1);
   for (std::size_t i = 0; i < overlapping.size(); i += stride) {
     const Point n = (overlapping[i].a == pair.a ? 1.0 : -1.0) * overlapping[i].normal;
-    const double way = way_out(pair, overlapping, n, 2 * reach);
+    const double way = way_out(pair.a, overlapping, n, 2 * reach);
     if (way < least) least = way, axis = n;
   }
   std::erase_if(list, [&](Touch& t) {

@@ -1,11 +1,10 @@
 #pragma once
 // Where two bones stand nearer to each other than they shall.
 #include <array>
-#include <memory>
 #include <vector>
 
 #include "body/joints/articulation.h"
-#include "body/joints/bone_surface.h"
+#include "body/joints/bone_surfaces.h"
 
 namespace fabrica::body {
 
@@ -29,22 +28,27 @@ struct NearPair {
 
 class Surfaces {
  public:
-  explicit Surfaces(const std::vector<PlacedBone>& bones);
-  void renew(int bone);  // after its nodes have moved
-  const BoneSurface& operator[](int bone) const { return *surfaces_[std::size_t(bone)]; }
+  explicit Surfaces(const std::vector<PlacedBone>& bones) : bones_(bones), surfaces_(bones) {}
+  void renew(int bone) { surfaces_.renew(bone); }  // after its nodes have moved
+  const BoneSurface& operator[](int bone) const { return surfaces_[bone]; }
   // pairs whose boxes are within their gap: of a joint what the joint wants, 0.2 mm elsewhere
   std::vector<NearPair> near(const std::vector<Articulation>& joints) const;
   // the nodes of either bone that are nearer to the other than gap + margin; what is deeper than
   // reach [mm] inside is taken for the other side of the bone
   std::vector<Touch> touches(const NearPair& pair, double margin, double reach) const;
 
+  // the nodes of either bone that are inside the other, at most reach deep, whatever face is near
+  std::vector<Touch> overlapping(int a, int b, double reach) const;
+  // [mm] how far bone a has to go along the unit axis until none of those nodes is inside the
+  // other; at most reach
+  double way_out(int a, const std::vector<Touch>& overlapping, const Point& axis,
+                 double reach) const;
+
  private:
   void collect(const NearPair& pair, double margin, double reach, std::vector<Touch>& list) const;
-  double way_out(const NearPair& pair, const std::vector<Touch>& overlapping, const Point& axis,
-                 double reach) const;
   void part_along_axis(const NearPair& pair, double reach, std::vector<Touch>& list) const;
   const std::vector<PlacedBone>& bones_;
-  std::vector<std::unique_ptr<BoneSurface>> surfaces_;
+  BoneSurfaces surfaces_;
 };
 
 }  // namespace fabrica::body
