@@ -5,8 +5,16 @@ FOLDER holds the full tables (index.csv, *_stack.csv, *_loft.csv, skull_vault_sh
 Shipped is the thinned form: contours keep at most 6 harmonics, slices and stations are taken 1.6 spacings apart
 (the nearest ones that exist, first and last always), so that no surface can be recovered finer than 0.5-0.75 mm.
 Only what the mesh makers read is written. The result depends on the input alone.
+
+Ribs of data/anatomy/rib_arches.csv get the arch of the mean man: with h the height of the centre-line over the line of its
+ends, in the rib's plane, each point moves along h by
+
+    (k - 1) w(s) h,   k = (rise / span of the table) span / max h,   w = 0 up to the tubercle, 1 from there on smoothly,
+
+sections turn with the tangent, ends stay where they are; volume and box in index.csv follow.
 """
 import csv
+import math
 import pathlib
 import re
 import sys
@@ -16,6 +24,7 @@ SPACING = 1.6
 VAULT_DEGREE = 10  # a smooth fit; a lower degree leaves waves of 1.5 mm on the crown
 # the slices of the skull are 4.9 mm apart: its table is already coarser (0.7 mm) than the thinned form of the others
 WHOLE = {"skull"}
+ARCHES = pathlib.Path(__file__).resolve().parents[1] / "data" / "anatomy" / "rib_arches.csv"
 NOTICE = ("# Dimensions measured from BodyParts3D, (c) The Database Center for Life Science, CC BY-SA 4.0; changes: scaled"
           " per region, reduced to cross-section fits, thinned. See LICENSE in data/anatomy.\n")
 # bones meshed from their lofts (no stack, or a shape that sections describe better)
@@ -71,9 +80,6 @@ def unfolded(stations):
     def part(row, name):
         return [float(row[name + axis + suffix]) for axis, suffix in zip("xyz", ["_mm"] * 3 if name == "c" else [""] * 3)]
 
-    def dot(a, b):
-        return sum(x * y for x, y in zip(a, b))
-
     normals = [part(row, "n") for row in stations]
     if all(dot(a, b) > 0 for a, b in zip(normals, normals[1:])):
         return stations
@@ -91,8 +97,94 @@ def unfolded(stations):
     return result
 
 
+def add(a, b, factor=1.0):
+    return [x + factor * y for x, y in zip(a, b)]
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def unit(a):
+    return [x / math.sqrt(dot(a, a)) for x in a]
+
+
+def lengths(points):
+    """length of the line through points up to each of them"""
+    total = [0.0]
+    for a, b in zip(points, points[1:]):
+        total.append(total[-1] + math.dist(a, b))
+    return total
+
+
+def tangents(points):
+    """of parabolas through neighbouring points"""
+    s, result = lengths(points), []
+    for i in range(len(points)):
+        j = min(max(i, 1), len(points) - 2)
+        (a, b, c), x = s[j - 1:j + 2], s[i]
+        parts = ((2 * x - b - c) / ((a - b) * (a - c)), (2 * x - a - c) / ((b - a) * (b - c)), (2 * x - a - b) / ((c - a) * (c - b)))
+        result.append(unit([sum(w * p[k] for w, p in zip(parts, points[j - 1:j + 2])) for k in range(3)]))
+    return result
+
+
+def turned(vector, a, b):
+    """vector turned by the smallest rotation from unit vector a to b"""
+    axis, cosine = cross(a, b), dot(a, b)
+    return add(add([cosine * v for v in vector], cross(axis, vector)), axis, dot(axis, vector) / (1 + cosine))
+
+
+def arches():
+    _, rows = read(ARCHES)
+    return {row["bone"]: (float(row["rise_over_span"]), float(row["tubercle_mm"])) for row in rows}
+
+
+def arched(stations, rise_over_span, tubercle):
+    """stations of a rib with the given rise over the line of its ends (head of this file)"""
+    def part(row, names):
+        return [float(row[name]) for name in names]
+
+    centre, normal, e1 = ["cx_mm", "cy_mm", "cz_mm"], ["nx", "ny", "nz"], ["e1x", "e1y", "e1z"]
+    old = [part(row, centre) for row in stations]
+    span, along = math.dist(old[0], old[-1]), unit(add(old[-1], old[0], -1))
+    offsets = [add(add(p, old[0], -1), along, -dot(add(p, old[0], -1), along)) for p in old]
+    up = unit([sum(o[k] for o in offsets) for k in range(3)])
+    heights = [dot(o, up) for o in offsets]
+    k = rise_over_span * span / max(heights)
+    new = []
+    for p, h, s in zip(old, heights, lengths(old)):
+        t = min(max((s - tubercle) / (2 * tubercle), 0), 1)
+        new.append(add(p, up, (k - 1) * t * t * (3 - 2 * t) * h))
+    result = []
+    for row, p, a, b in zip(stations, new, tangents(old), tangents(new)):
+        fields = p + turned(part(row, normal), a, b) + turned(part(row, e1), a, b)
+        result.append(row | {name: repr(v) for name, v in zip(centre + normal + e1, fields)})
+    return result
+
+
+def change_of(stations, arch):
+    """factor of the volume of a rib by its arch, and how far the ends of its box move"""
+    def points(rows):
+        return [[float(row[f"c{axis}_mm"]) for axis in "xyz"] for row in rows]
+
+    def volume(line):
+        return sum(0.5 * (float(a["area_mm2"]) + float(b["area_mm2"])) * math.dist(p, q)
+                   for a, b, p, q in zip(stations, stations[1:], line, line[1:]))
+
+    old, new = points(stations), points(arched(stations, *arch))
+    moves = [end(p[k] for p in new) - end(p[k] for p in old) for end in (min, max) for k in range(3)]
+    return volume(new) / volume(old), moves
+
+
 def thin_loft(source, target):
     _, rows = read(source)
+    arch = arches().get(source.name.removesuffix("_loft.csv"))
+    if arch:
+        rows = arched(rows, *arch)
     fields = ["cx_mm", "cy_mm", "cz_mm", "nx", "ny", "nz", "e1x", "e1y", "e1z", "r0_mm"]
     waves = [f"{part}{k}_mm" for k in range(1, HARMONICS + 1) for part in ("c", "s")]
     pieces = {}
@@ -106,8 +198,9 @@ def thin_loft(source, target):
             directions = [f"{float(row[f]):.4f}" for f in fields[3:9]]
             out.append([piece] + [number(row[f]) for f in fields[:3]] + directions +
                        [number(row["r0_mm"])] + [number(row[w]) for w in waves])
-    write(target, "# sections r(phi) = r0 + sum_k c_k cos k phi + s_k sin k phi in the plane through c with normal n; phi from"
-          " e1 towards n x e1 [mm]\n", ["piece"] + [c.replace("_mm", "") for c in fields + waves], out)
+    raised = "# centre-line raised to the arch of data/anatomy/rib_arches.csv\n" if arch else ""
+    write(target, raised + "# sections r(phi) = r0 + sum_k c_k cos k phi + s_k sin k phi in the plane through c with normal n;"
+          " phi from e1 towards n x e1 [mm]\n", ["piece"] + [c.replace("_mm", "") for c in fields + waves], out)
 
 
 def constructed_cartilages(source, target):
@@ -149,6 +242,13 @@ def index(source, target, planes):
     _, rows = read(source)
     out = []
     for row in rows:
+        arch = arches().get(row["bone"])
+        if arch:
+            _, stations = read(source.parent / f"{row['bone']}_loft.csv")
+            factor, moves = change_of(stations, arch)
+            row["volume_cm3"] = number(float(row["volume_cm3"]) * factor)
+            for name, move in zip(("xmin", "ymin", "zmin", "xmax", "ymax", "zmax"), moves):
+                row[name] = number(float(row[name]) + move)
         n, e1 = planes.get(row["bone"], (["", "", ""], ["", "", ""]))
         out.append([row["bone"], row["frame"], row["volume_cm3"]] +
                    [row[c] for c in ("xmin", "ymin", "zmin", "xmax", "ymax", "zmax")] + n + e1)

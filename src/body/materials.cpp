@@ -2,12 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <sstream>
 
 #include "body/cards.h"
 
 namespace fabrica::body {
+namespace {
+
+constexpr double per_ms = 1000;  // [1/s]
+
+}  // namespace
 
 Materials::Materials(Builder& builder, bool fracture)
     : builder_(builder), fracture_(fracture), table_("materials.csv") {
@@ -45,11 +51,13 @@ std::int64_t Materials::use(const std::string& row) {
   const char* field = c.has_field("fail") ? "fail" : "fs";
   if (criterion == "delete") c.set(field, table_.number(r, "value"));
   if (criterion == "strain" && fracture_)
-    c.set(field, plastic_strain_at(c, table_.number(r, "value")));
+    c.set(field, plastic_strain_at(
+                     c, table_.number(r, "value"),
+                     table_.text(r, "rate").empty() ? 0 : table_.number(r, "rate") / per_ms));
   return ids_[row] = last_material_;
 }
 
-double plastic_strain_at(const Card& law, double strain) {
+double plastic_strain_at(const Card& law, double strain, double rate) {
   const double E = law.real("e"), yield = law.real("sigy"), tangent = law.real("etan");
   std::vector<std::pair<double, double>> curve;
   for (int i = 1; i <= 8 && law.has_field("eps1"); ++i) {
@@ -57,6 +65,8 @@ double plastic_strain_at(const Card& law, double strain) {
     if (s > 0) curve.emplace_back(e, s);
   }
   if (curve.size() < 2) curve = {{0, yield}, {1, yield + E * tangent / (E - tangent)}};
+  if (rate > 0)
+    for (auto& point : curve) point.second *= 1 + std::pow(rate / law.real("c"), 1 / law.real("p"));
   if (curve[0].second >= E * strain) return 0;
   // the piece that holds the root, the last one goes on
   std::size_t i = 0;

@@ -35,12 +35,13 @@ class Materials {
 };
 
 // The plastic strain e_p at which a bar of a law (*MAT_PIECEWISE_LINEAR_PLASTICITY or
-// *MAT_PLASTIC_KINEMATIC) pulled slowly reaches a strain e:
+// *MAT_PLASTIC_KINEMATIC) pulled at a strain rate [1/ms], 0 is slowly, reaches a strain e:
 //
-//   e_p + s(e_p) / E = e,   s = SIGY + E ETAN / (E - ETAN) e_p, or the curve EPS, ES          (1)
+//   e_p + s(e_p) / E = e,   s = SIGY + E ETAN / (E - ETAN) e_p, or the curve EPS, ES,         (1)
+//                               times 1 + (rate / C)^(1/P)
 //
 // 0 where it is still elastic.
-double plastic_strain_at(const Card& law, double strain);
+double plastic_strain_at(const Card& law, double strain, double rate = 0);
 
 // materials of a bone, a row of data/anatomy/bone_materials.csv
 struct BoneMaterial {

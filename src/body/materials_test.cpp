@@ -62,6 +62,13 @@ TEST_CASE("the cortex of ribs has the stress of its coupons at the rate of their
   CHECK(stress(0.002) == doctest::Approx(0.0939).epsilon(0.002));
   const double plastic = 0.027 - 0.1242 / law.real("e");
   CHECK(stress(plastic) == doctest::Approx(0.1242).epsilon(0.002));
+  // and is deleted there
+  CHECK(plastic_strain_at(law, 0.027, 5e-4) == doctest::Approx(plastic).epsilon(0.002));
+  Builder other(diagnostics);
+  Materials(other, true).use("rib_cortical");
+  const std::unique_ptr<Model> model = other.finish();
+  REQUIRE(model->cards.size() == 1);
+  CHECK(model->cards[0]->real("fail") == doctest::Approx(plastic).epsilon(0.002));
   // the curve goes on with the same slope
   CHECK(law.real("es3") ==
         doctest::Approx(law.real("es2") + slope * (0.1 - law.real("eps2"))).epsilon(0.002));

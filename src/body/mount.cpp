@@ -113,7 +113,10 @@ class Laying {
       const auto [pot, bone] = pot_named(name);
       return pivot_of(*pot, *bone);
     };
-    const Point from = pivot(specimen_.from), x = unit(pivot(specimen_.to) - from);
+    const Point from = pivot(specimen_.from), span = pivot(specimen_.to) - from, x = unit(span);
+    if (std::abs(specimen_.offset) >= norm(span))
+      throw BodyError(fmt::format("{}: offset of {} is {:g} mm, but its pivots are {:.1f} mm apart",
+                                  rig_.path, specimen_.bone.text, specimen_.offset, norm(span)));
     std::vector<Point> all;
     for (const int b : bones_)
       all.insert(all.end(), body_.bones[std::size_t(b)].nodes.begin(),
@@ -127,8 +130,10 @@ class Laying {
                       "across",
                       rig_.path, specimen_.bone.text));
     z = unit(z);
-    const Point y = cross(z, x);
-    const Mat3d R{{{x.x, x.y, x.z}, {y.x, y.y, y.z}, {z.x, z.y, z.z}}};
+    // turned about z, so that `to` stands off the x axis by `offset`
+    const double sine = specimen_.offset / norm(span), cosine = std::sqrt(1 - sine * sine);
+    const Point y = cross(z, x), along = cosine * x - sine * y, across = sine * x + cosine * y;
+    const Mat3d R{{{along.x, along.y, along.z}, {across.x, across.y, across.z}, {z.x, z.y, z.z}}};
     return {R, specimen_.at - R * from};
   }
 

@@ -201,6 +201,9 @@ RigSpecimen read_specimen(RigTable table, const std::vector<RigPot>& pots) {
                                         name, specimen.bone.text));
     }
   }
+  specimen.offset = table.number("offset", 0);
+  if (specimen.offset != 0 && specimen.from.empty())
+    table.fail("offset", "is that of the second pot; give along, or take it out");
   if (const auto at = table.point("at")) specimen.at = *at;
   specimen.up = table.point("up");
   if (specimen.up && specimen.from.empty())

@@ -34,12 +34,14 @@ struct RigSupport {
 // A bone that is taken out of the body and laid into the rig: the pivot of pot `from` at `at`, that
 // of pot `to` on the x axis through it; z is the direction `up` of the bone's frame made square to
 // x or, without it, the direction square to x in which the specimen is flattest, towards the
-// frame's +Z. Without pots the bone's frame is the rig's, its origin at `at`. The bones `with` it
-// keep their places beside it and what joins them to it.
+// frame's +Z. With an `offset` the whole is turned about z until `to` stands beside x. Without pots
+// the bone's frame is the rig's, its origin at `at`. The bones `with` it keep their places beside
+// it and what joins them to it.
 struct RigSpecimen {
   BoneName bone;
   std::vector<BoneName> with;
   std::string from, to;  // both empty: by the frame
+  double offset = 0;     // [mm] of the pivot of `to` along y
   Point at{0, 0, 0};
   std::optional<Point> up;
 

@@ -164,6 +164,30 @@ TEST_CASE("a specimen lies in the rig with its pots on the x axis, flat, unstrai
   for (const double angle : {-0.3, -0.01, 0.01, 0.3, 1.5}) CHECK(spread(0) < spread(angle));
 }
 
+TEST_CASE("a specimen with an offset is turned in its plane") {
+  std::string text = good;
+  text.replace(text.find("at = [7"), 0, "offset = -60\n");
+  const Rig straight = rig_of(good), turned = rig_of(text);
+  Body a = specimens_of(straight), b = specimens_of(turned);
+  const auto pivots = [](const Rig& rig, const Body& body) {
+    return std::pair{mean_of(body.bones[0], potted_nodes(rig.pots[0], body.bones[0])),
+                     mean_of(body.bones[0], potted_nodes(rig.pots[1], body.bones[0]))};
+  };
+  const auto [from, to] = pivots(turned, b);
+  const double span = norm(pivots(straight, a).second - pivots(straight, a).first);
+  CHECK(norm(from - Point{7, 8, 9}) < 1e-9);
+  CHECK(norm(to - from - Point{std::sqrt(span * span - 60 * 60), -60, 0}) < 1e-9);
+  // in its plane: heights stay
+  for (std::size_t n = 0; n < a.bones[0].nodes.size(); n += 7)
+    CHECK(std::abs(a.bones[0].nodes[n].z - b.bones[0].nodes[n].z) < 1e-9);
+
+  text.replace(text.find("-60"), 3, "260");
+  const Rig far = rig_of(text);
+  CHECK_THROWS_AS(specimens_of(far), BodyError);
+  CHECK(refusal("along = [\"posterior\", \"anterior\"]", "offset = 5")
+            .starts_with("16: specimen[1].offset is that of the second pot"));
+}
+
 TEST_CASE("pots become rigid bodies whose section holds every element beside them") {
   const Rig rig = rig_of(good);
   const Mounted mounted(rig);
@@ -294,7 +318,7 @@ TEST_CASE("a fixture that passes the bone by is refused") {
 
 TEST_CASE("a pad lies between the fixture and the bone and shares its face") {
   const Mounted press(rig_of(with_fixture(
-      "shape = \"box\"\nsize = [24, 48, 10]\nat = [77, -60, 0]\npad = { thickness = 6, density = "
+      "shape = \"box\"\nsize = [24, 48, 10]\nat = [77, -75, 0]\npad = { thickness = 6, density = "
       "1.5e-8, modulus = 1, compression = [[0, 0], [1, 0.1]] }")));
   const std::vector<Point> rigid = nodes_of(*press.model, press.parts.back().id),
                            pad = nodes_of(*press.model, press.parts.back().id + 1);

@@ -7,7 +7,8 @@ edges of the polygon, bricks inside. With the 6 x 6 flexibility of the free leng
 
     A^T c A ds,   c = diag(1/EA, 1/GA', 1/GA', 1/GJ) and the inverse of the bending stiffness,   A: section forces of unit loads,
 
-both pots rigid, a unit shortening along x, pivots free about z: five equations for Fx, Fz, Mx, My and the turn of the posterior pot.
+both pots rigid, a unit shortening along x, the line of the pivots, which are free about z: five equations for Fx, Fz, Mx, My and the
+turn of the posterior pot.
 
 Then the moment [N m] in the plane at which the outermost fibre of each section reaches the strain at fracture, by the stress of the coupons
 at the rate of their test (cortex alone, plane sections, no axial force): mean, least, greatest over the free length; and the depth of the
@@ -115,12 +116,19 @@ class Section:
 class Rib:
     def __init__(self, deck, number, E, core):
         nodes, bricks, shells, pots = deck
+        rigs = [[n for b in bricks if b[1] == part for n in b[2:]] for part in sorted({b[1] for b in bricks if b[1] > 8000000})]
         part = sorted({b[1] for b in bricks})[number]
         own = [b for b in bricks if b[1] == part]
         first = min(n for b in own for n in b[2:])
         per_ring = own[0][6] - own[0][2]
         count = (max(n for b in own for n in b[2:]) - first + 1) // per_ring
         ring = lambda n: (n - first) // per_ring
+        mine = [i for i, p in enumerate(pots) if any(ring(n) in range(count) for n in p)]
+        self.pivot = sorted(mean([nodes[n] for n in rigs[i]]) for i in mine)
+        line = add(self.pivot[1], self.pivot[0], -1)
+        cosine, sine = line[0] / math.hypot(*line[:2]), line[1] / math.hypot(*line[:2])
+        turned = lambda x: [cosine * x[0] + sine * x[1], cosine * x[1] - sine * x[0], x[2]]
+        self.pivot = list(map(turned, self.pivot))
         shell_part = sorted({s[1] for s, _ in shells})[number]
         edges = {}
         for s, t in shells:
@@ -128,7 +136,7 @@ class Rib:
             pair = [n - first - low * per_ring for n in s[2:] if ring(n) == low]
             if s[1] == shell_part and len(pair) == 2:
                 edges.setdefault(low, []).append((*pair, t))
-        at = lambda i, k: nodes[first + i * per_ring + k]
+        at = lambda i, k: turned(nodes[first + i * per_ring + k])
         self.slices = []
         for i in range(count - 1):
             order, thick, left = [edges[i][0][0]], [], list(edges[i])
@@ -142,9 +150,7 @@ class Rib:
             section = Section(corners, thick, add(ends[1], ends[0], -1), E, core)
             shift = add(section.centre, mean(ends), -1)
             self.slices.append((section, add(ends[0], shift), add(ends[1], shift)))
-        mine = [p for p in pots if any(ring(n) in range(count) for n in p)]
-        self.pivot = [mean([nodes[n] for n in p]) for p in mine]
-        held = {i for p in mine for i in range(count) if sum(ring(n) == i for n in p) >= 0.6 * per_ring}
+        held = {i for p in mine for i in range(count) if sum(ring(n) == i for n in pots[p]) >= 0.6 * per_ring}
         self.free = [s for i, s in enumerate(self.slices) if not (i in held and i + 1 in held)]
 
     def stiffness(self, rise=0.0):
