@@ -75,8 +75,11 @@ class Knee {
     const auto off = [&](const Eigen::Vector2d& u) {
       const KneeContacts k =
           surfaces_.contacts(frame("femur"), placed("knee", row(u)), frame("patella"));
-      return Eigen::Vector2d(missing(k.medial, start_.medial, tibiofemoral_gap, f),
-                             missing(k.lateral, start_.lateral, tibiofemoral_gap, f));
+      const auto gap = [&](double start) {
+        return tibiofemoral_gap + share(f) * (start - tibiofemoral_gap);
+      };
+      return Eigen::Vector2d(missing(k.medial, gap(start_.medial.gap)),
+                             missing(k.lateral, gap(start_.lateral.gap)));
     };
     if (f > 0) x = rest(x, off);
     return row(x);
@@ -91,12 +94,10 @@ class Knee {
     const auto off = [&](const Eigen::Vector2d& u) {
       const KneeContacts k =
           surfaces_.contacts(frame("femur"), frame("tibia"), placed("patella", row(u)));
-      const double f = 61.0 / 39.0 * p;
-      return Eigen::Vector2d(
-          missing(k.medial_patella, start_.medial_patella, patellofemoral_gap, f),
-          missing(k.lateral_patella, start_.lateral_patella, patellofemoral_gap, f));
+      return Eigen::Vector2d(missing(k.medial_patella, patellofemoral_gap),
+                             missing(k.lateral_patella, patellofemoral_gap));
     };
-    if (p > 0) x = rest(x, off);
+    x = rest(x, off);
     return row(x);
   }
 
@@ -116,9 +117,9 @@ class Knee {
     const Point& c = joint(name).centre;
     return {q * child.R, c + row.shift + q * (child.t - c)};
   }
-  static double missing(const KneeContact& now, const KneeContact& start, double gap, double f) {
+  static double missing(const KneeContact& now, double gap) {
     constexpr double far = 20;  // [mm] where nothing is met
-    return std::min(now.gap, far) - gap - share(f) * (start.gap - gap);
+    return std::min(now.gap, far) - gap;
   }
   Point middle() const { return frame("patella")(middle_of(patella_.nodes)); }
 

@@ -5,8 +5,8 @@ import pathlib
 import subprocess
 
 
-def rig(timing, held, moved, others, name, support):
-    """A rig of joined bones: `held` potted whole and fixed, `moved` potted whole about its frame's origin with the lines of
+def rig(timing, held, moved, others, name, support, pivot=(0, 0, 0)):
+    """A rig of joined bones: `held` potted whole and fixed, `moved` potted whole about a point of its frame with the lines of
     `support` (free, load, motion), `others` carried along. `timing`: the lines above the pots."""
     bones = ", ".join(f'"{b}"' for b in [moved, *others])
     return f"""{timing}
@@ -20,7 +20,7 @@ name   = "{name}"
 bones  = ["{moved}"]
 toward = [0, 0, 1]
 depth  = 2000
-pivot_at = [0, 0, 0]
+pivot_at = {list(pivot)}
 {support}
 [[specimen]]
 bone = "{held}"

@@ -7,9 +7,10 @@
 // with the axes a of data/anatomy/joint_axes.csv in the global axes of the standing body and the
 // angles q from there; d, v and i follow from q1 by the curves of data/anatomy/joint_paths.csv
 // (knee and patella, docs/theory/knee.md), 0 elsewhere. All angles zero give the standing placement
-// of data/anatomy/assembly.csv exactly. Left joints mirror right ones. Ribs, cartilages and sternum
-// ride the thorax frame; each rib then turns about its head so that it follows its vertebra while
-// its front end stays with the sternum (rib_placement).
+// of data/anatomy/assembly.csv exactly, but that the patella has room for its cartilage. Left
+// joints mirror right ones. Ribs, cartilages and sternum ride the thorax frame; each rib then turns
+// about its head so that it follows its vertebra while its front end stays with the sternum
+// (rib_placement).
 #include <map>
 #include <string>
 #include <vector>

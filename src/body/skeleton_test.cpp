@@ -44,6 +44,7 @@ double landmark_error(const Skeleton& skeleton, const Skeleton& standing, const 
 
 }  // namespace
 
+// The patella alone stands off, by the room of its cartilage: the first row of its path.
 TEST_CASE("the standing skeleton of the man of the tables stands where the tables put it") {
   const Skeleton skeleton(man(), named_posture("standing"));
   const Table t("anatomy/assembly.csv");
@@ -52,7 +53,8 @@ TEST_CASE("the standing skeleton of the man of the tables stands where the table
     if (t.text(r, "posture") != "stand") continue;
     const std::string& name = t.text(r, "frame");
     const Side side = skeleton.has_frame(name, Side::right) ? Side::right : Side::midline;
-    const Point off = skeleton.frame(name, side).t -
+    const Joint* path = name == "patella" ? find_joint(name) : nullptr;
+    const Point off = skeleton.frame(name, side).t - (path ? path->path_at(0).shift : Point{}) -
                       Point{t.number(r, "tx"), t.number(r, "ty"), t.number(r, "tz")};
     CHECK(norm(off) < 0.01);  // the tables' last digit
     ++frames;

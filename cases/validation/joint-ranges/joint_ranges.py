@@ -3,10 +3,10 @@
 
 joint_ranges.py FABRICA OUT [JOINT ...]
 
-Each joint is made of its bones alone in a test rig: the first bone is held, the second turned about its frame's origin, the centre of
-the joint, at a steady rate after a start of 5 ms, while it may shift freely. Its mass is that of the bone. Ranges are those of
-data/anatomy/joint_axes.csv, axes rounded to those of the held bone's frame. Torque on the turned bone, from the work W of the motion
-and the kinetic energy T:
+Each joint is made of its bones alone in a test rig: the first bone is held, the second turned about the centre of the joint
+(data/anatomy/joint_tree.csv) at a steady rate after a start of 5 ms, while it may shift freely. The mass of the bone stands at that
+centre: swung about it, it would load the joint. Ranges are those of data/anatomy/joint_axes.csv, axes rounded to those of the held
+bone's frame. Torque on the turned bone, from the work W of the motion and the kinetic energy T:
 
     M = d(W - T) / d(angle)
 
@@ -39,12 +39,25 @@ RATE = 2  # degrees / ms
 START = 5  # ms; twice that and half the rate where other bones are carried along
 
 
+def row_of(table, **keys):
+    lines = [line for line in (ROOT / "data/anatomy" / table).read_text().splitlines() if not line.startswith("#")]
+    for row in csv.DictReader(lines):
+        if all(row[key] == value for key, value in keys.items()):
+            return row
+    raise SystemExit(f"data/anatomy/{table} has no {keys}")
+
+
 def limits(joint, coordinate):
-    table = [line for line in (ROOT / "data/anatomy/joint_axes.csv").read_text().splitlines() if not line.startswith("#")]
-    for row in csv.DictReader(table):
-        if row["joint"] == joint and row["coordinate"] == coordinate:
-            return float(row["low"]), float(row["high"])
-    raise SystemExit(f"data/anatomy/joint_axes.csv has no {joint} {coordinate}")
+    row = row_of("joint_axes.csv", joint=joint, coordinate=coordinate)
+    return float(row["low"]), float(row["high"])
+
+
+def centre(joint):
+    """Of a joint in the frame of the bone that it turns [mm]."""
+    row = row_of("joint_tree.csv", joint=joint)
+    frame = row_of("assembly.csv", frame={"talus": "foot"}.get(row["child"], row["child"]), posture="stand")
+    from_origin = [float(row[x]) - float(frame["t" + x]) for x in "xyz"]
+    return [round(sum(float(frame[f"r{i + 1}{j}"]) * from_origin[i] for i in range(3)), 2) for j in (1, 2, 3)]
 
 
 def torques(folder, radians, time, start):
@@ -77,7 +90,7 @@ def turn(fabrica, folder, name, joint, degrees):
     support = ('free   = ["x", "y", "z"]\n'
                f'motion = {{ along = "{axis}", velocity = [[0, 0], [{start}, {rate:.6f}], [{time:.2f}, {rate:.6f}]] }}')
     stem = folder / f"{name.replace(' ', '_')}_{degrees:+g}"
-    apart, failed = joint_rig.run(fabrica, stem, joint_rig.rig(timing, held, turned, others, "turned", support))
+    apart, failed = joint_rig.run(fabrica, stem, joint_rig.rig(timing, held, turned, others, "turned", support, centre(joint[5])))
     return (None if failed else torques(stem, radians, time, start)), apart, failed
 
 

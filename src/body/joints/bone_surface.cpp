@@ -22,14 +22,19 @@ Point quad_normal(const Point& a, const Point& b, const Point& c, const Point& d
 }
 
 bool behind(const Point& p, const std::array<Point, 4>& face, double before) {
+  constexpr double on_face = 1e-3;  // [mm] beside a face that counts as over it
+  // behind a valley between two faces the nearest place is its edge: so far beside a face counts as
+  // behind it, of the depth, for valleys of up to 53 degrees
+  constexpr double in_valley = 0.5;
   static constexpr int triangles[4][3] = {{0, 1, 2}, {0, 2, 3}, {0, 1, 3}, {1, 2, 3}};
   return std::any_of(std::begin(triangles), std::end(triangles), [&](const int(&t)[3]) {
     const Point &a = face[std::size_t(t[0])], &b = face[std::size_t(t[1])],
                 &c = face[std::size_t(t[2])];
     const Point normal = cross(b - a, c - a), to = p - closest_on_triangle(p, a, b, c);
     const double length = norm(normal), along = length > 0 ? dot(to, normal) / length : 0;
-    const double aside2 = dot(to, to) - along * along;
-    return length > 0 && aside2 < 1e-6 && along < before && along > -3;
+    const double aside2 = dot(to, to) - along * along,
+                 beside = std::max(on_face, -in_valley * along);
+    return length > 0 && aside2 < beside * beside && along < before && along > -3;
   });
 }
 

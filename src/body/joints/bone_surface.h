@@ -56,8 +56,9 @@ Point quad_normal(const Point& a, const Point& b, const Point& c, const Point& d
 
 inline constexpr double touching = 0.02;  // [mm] before a face that counts as behind it
 
-// Does p stand less than `before` mm before a face or up to 3 mm behind it? Either diagonal counts,
-// for a warped face lies between the two.
+// Does p stand less than `before` mm before a face or up to 3 mm behind it, or behind the edge
+// where it forms a valley with its neighbour? Either diagonal counts, for a warped face lies
+// between the two.
 bool behind(const Point& p, const std::array<Point, 4>& face, double before);
 
 }  // namespace fabrica::body

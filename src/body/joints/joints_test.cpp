@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "body/joints/bone_surface.h"
@@ -54,6 +55,19 @@ TEST_CASE("the nearest point of a surface has the signed distance of a box") {
   const SurfacePoint hit = surface.hit({4, 6, 25}, {0, 0, -1}, 30);
   CHECK(hit.distance == Approx(15));
   CHECK(hit.normal.z == Approx(1));
+}
+
+// A valley of 40 degrees along x = 0 between two faces, and a place 0.5 mm under it: it stands over
+// neither, its nearest place is the edge. Over the edge of a flat face, 0.3 mm beside it and 0.5 mm
+// deep, nothing is behind; nor is what stands before the valley.
+TEST_CASE("a place under a valley of two faces is behind them") {
+  const double t = std::tan(0.5 * 40 * std::numbers::pi / 180);
+  const std::array<Point, 4> left{{{-4, -2, 4 * t}, {0, -2, 0}, {0, 2, 0}, {-4, 2, 4 * t}}};
+  CHECK(behind({0, 0, -0.5}, left, touching));
+  CHECK(!behind({0, 0, 0.5}, left, touching));
+  const std::array<Point, 4> flat{{{-4, -2, 0}, {0, -2, 0}, {0, 2, 0}, {-4, 2, 0}}};
+  CHECK(behind({-0.5, 0, -0.5}, flat, touching));
+  CHECK(!behind({0.3, 0, -0.5}, flat, touching));
 }
 
 // Blankevoort: k s at the end of the toe (x = 2 s), slope k beyond; nothing where slack or pressed.

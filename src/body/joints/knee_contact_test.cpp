@@ -45,20 +45,14 @@ constexpr double tibiofemoral = 4.9, patellofemoral = 5.6;
 // What the path is made for, at its knots, which lie 10 and 7.8 degrees apart, and between them.
 TEST_CASE("both condyles and the patella keep the room of their cartilage as the knee bends") {
   const BentKnee knee(Resolution::standard);
-  for (double f = 30; f <= 140; f += 5) {
+  for (double f = 0; f <= 140; f += 5) {
     CAPTURE(f);
     const KneeContacts k = knee.contacts(f);
+    // up to 30 degrees the condyles go over from where they stand, less than 1 mm from there
     CHECK(std::abs(k.medial.gap - tibiofemoral) < 1);
     CHECK(std::abs(k.lateral.gap - tibiofemoral) < 1);
     CHECK(std::abs(k.medial_patella.gap - patellofemoral) < 1);
     CHECK(std::abs(k.lateral_patella.gap - patellofemoral) < 1);
-  }
-  // near extension the condyles go over from where they stand, less than 1 mm from there
-  for (double f = 0; f < 30; f += 5) {
-    CAPTURE(f);
-    const KneeContacts k = knee.contacts(f);
-    CHECK(std::abs(k.medial.gap - tibiofemoral) < 1);
-    CHECK(std::abs(k.lateral.gap - tibiofemoral) < 1);
   }
 }
 
@@ -74,7 +68,7 @@ TEST_CASE("coarse condyles keep the room of their cartilage as well as their mes
     CHECK(std::abs(k.medial.gap - tibiofemoral) < off);
     CHECK(std::abs(k.lateral.gap - tibiofemoral) < off);
     CHECK(std::min(k.medial.gap, k.lateral.gap) > 1);
-    if (f >= 15) CHECK(std::min(k.medial_patella.gap, k.lateral_patella.gap) > 1);
+    CHECK(std::min(k.medial_patella.gap, k.lateral_patella.gap) > 1);
   }
 }
 
