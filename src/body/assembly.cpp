@@ -239,7 +239,6 @@ class Assembly {
                         {0, "", p.material.empty() ? p.law.keyword : p.material, p.source, -1,
                          index, int(p.bricks.size() + p.quads.size() + p.lines.size()), false});
     piece_elements(p, pid, node);
-    if (p.kind == PieceKind::spring && p.damping > 0) dampers(p, node);
   }
 
   void piece_elements(const Piece& p, Id pid, const std::vector<Id>& node) {
@@ -262,22 +261,6 @@ class Assembly {
         builder_.add_discrete(++element, pid, a, b, 0, p.line_scale.empty() ? 1 : p.line_scale[i],
                               0);
     }
-  }
-
-  // a light viscous damper beside each spring
-  void dampers(const Piece& p, const std::vector<Id>& node) {
-    const Id section = ++last_section_;
-    titled(builder_, "SECTION_DISCRETE", p.name + ".damper")
-        .set("secid", double(section))
-        .set("dro", 0);
-    const Id material = materials_.add(
-        p.name + ".damper", {"MAT_DAMPER_VISCOUS", {{"dc", p.damping}}, "", {}, p.source, ""});
-    const Id pid =
-        part(p.region, p.name + ".damper", section, material, 0,
-             {0, "", "MAT_DAMPER_VISCOUS", p.source, -1, -1, int(p.lines.size()), false});
-    for (const auto& l : p.lines)
-      builder_.add_discrete(++ids(p.region).element, pid, node[std::size_t(l[0])],
-                            node[std::size_t(l[1])], 0, 1, 0);
   }
 
   Id segment_set(const std::string& title, const SurfacePatch& patch) {

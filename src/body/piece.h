@@ -52,7 +52,6 @@ struct Piece {
   std::vector<double> line_scale;  // springs: factor of the force of each line; empty: 1
   double thickness = 0;            // [mm] of quads
   double area = 0;                 // [mm2] of trusses
-  double damping = 0;              // [kN ms/mm] of a viscous damper beside each spring; 0: none
   std::string material;            // row of data/materials.csv; empty: law
   Law law;
   std::string bone_a,

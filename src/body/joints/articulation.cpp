@@ -78,4 +78,8 @@ double wanted_gap(const Articulation& joint) {
   return contact + std::min(joint.cartilage_a + joint.cartilage_b, room);
 }
 
+double plateau_gap(const Articulation& joint) {
+  return 0.1 + joint.cartilage_a + joint.cartilage_b;
+}
+
 }  // namespace fabrica::body

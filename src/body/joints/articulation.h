@@ -30,6 +30,10 @@ std::vector<Articulation> articulations(const std::vector<PlacedBone>& bones);
 // Gap [mm] that the bones of an articulation shall have where they are nearest: room for cartilage.
 double wanted_gap(const Articulation& joint);
 
+// The same of a meniscal joint on its plateau, all the room of its cartilage: the path of the joint
+// leaves it, and what coarse faces lack of it is what they are off.
+double plateau_gap(const Articulation& joint);
+
 struct ClearanceReport {
   double whole_shift = 0;  // [mm] largest by which a bone was moved as a whole
   std::string whole_shift_bone;

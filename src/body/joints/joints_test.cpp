@@ -178,6 +178,26 @@ TEST_CASE("a phalanx past the middle of the bone before it leaves by its end") {
   CHECK(std::abs(bones[1].placement.t.y) + std::abs(bones[1].placement.t.z) < 0.01);
 }
 
+// A block on another, 2 mm apart and with a step of its neighbour 2 mm beside it: as a knee they
+// part to the 2.2 + 2.6 + 0.1 of cartilage above the plateau and keep what they have beside it,
+// where 1.6 are enough.
+TEST_CASE("coarse condyles give way until their cartilage has room above the plateau") {
+  std::vector<PlacedBone> bones{block("femur", {0, 0, 14}, 12, 4),
+                                block("tibia", {0, 0, 0}, 12, 4)};
+  CHECK(clear_bones(bones).left.empty());
+  const auto least = [&] {
+    const BoneSurface below(bones[1].nodes, bones[1].mesh.surface);
+    double gap = 1e30;
+    for (const Point& p : bones[0].nodes) gap = std::min(gap, below.nearest(p, 20).distance);
+    return gap;
+  };
+  CHECK(least() > 4.9 - 0.1);
+  CHECK(least() < 4.9 + 0.1);
+  bones = {block("femur", {14, 0, 0}, 12, 4), block("tibia", {0, 0, 0}, 12, 4)};
+  clear_bones(bones);
+  CHECK(least() == Approx(2));
+}
+
 // The end of a cartilage stands 4 mm deep in that of its rib and 1 mm inside of a side, so that
 // most of its nodes are nearer to a side than to the end: the ends part along their common axis and
 // do not wrap one another.

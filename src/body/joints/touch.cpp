@@ -55,7 +55,13 @@ std::vector<NearPair> Surfaces::near(const std::vector<Articulation>& joints) co
       const double gap = joint == joint_of.end() ? elsewhere
                          : tied                  ? grown_on
                                                  : wanted_gap(*joint->second);
-      if (boxes_meet((*this)[a], (*this)[b], gap)) pairs.push_back({a, b, gap, tied});
+      NearPair pair{a, b, gap, tied};
+      if (joint != joint_of.end() && joint->second->kind == ArticulationKind::meniscal) {
+        const Articulation& knee = *joint->second;
+        pair.axis = bones_[std::size_t(knee.b)].placement.R * Point{0, 0, 1};
+        pair.axial_gap = plateau_gap(knee);
+      }
+      if (boxes_meet((*this)[a], (*this)[b], pair.largest_gap())) pairs.push_back(pair);
     }
   return pairs;
 }
@@ -67,15 +73,17 @@ void Surfaces::collect(const NearPair& pair, double margin, double reach,
   const BoneSurface &a = (*this)[pair.a], &b = (*this)[pair.b];
   for (int node : a.nodes()) {
     const Point& p = here[std::size_t(node)];
-    const SurfacePoint at = b.nearest(p, std::max(pair.gap + margin, reach));
-    if (at.quad < 0 || at.distance >= pair.gap + margin) continue;
+    const SurfacePoint at = b.nearest(p, std::max(pair.largest_gap() + margin, reach));
+    if (at.quad < 0) continue;
+    const double gap = pair.gap_at(at.normal);
+    if (at.distance >= gap + margin) continue;
     // on the far side of a thin bone the nearest face looks the same way as this one; the blunt
     // ends of bones that are tied leave in any direction
     const double alike = dot(a.node_normal(node), at.normal);
     if (!pair.tied && at.distance < 0 && alike > 0.5) continue;
     const auto& quad = bones_[std::size_t(pair.b)].mesh.surface[std::size_t(at.quad)];
-    list.push_back({pair.a, node, pair.b, quad, weights(there, quad, at.point), at.normal,
-                    at.distance, pair.gap});
+    list.push_back(
+        {pair.a, node, pair.b, quad, weights(there, quad, at.point), at.normal, at.distance, gap});
   }
 }
 
@@ -132,7 +140,9 @@ void Surfaces::part_along_axis(const NearPair& pair, double reach, std::vector<T
 std::vector<Touch> Surfaces::touches(const NearPair& pair, double margin, double reach) const {
   std::vector<Touch> list;
   collect(pair, margin, reach, list);
-  collect({pair.b, pair.a, pair.gap, pair.tied}, margin, reach, list);
+  NearPair back = pair;
+  std::swap(back.a, back.b);
+  collect(back, margin, reach, list);
   if (pair.tied) part_along_axis(pair, reach, list);
   return list;
 }

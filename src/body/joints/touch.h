@@ -1,6 +1,8 @@
 #pragma once
 // Where two bones stand nearer to each other than they shall.
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "body/joints/articulation.h"
@@ -24,6 +26,13 @@ struct NearPair {
   int a = 0, b = 0;
   double gap = 0;
   bool tied = false;
+  // within 45 degrees of this axis, where there is one, another gap counts
+  Point axis{0, 0, 0};
+  double axial_gap = 0;
+  double largest_gap() const { return std::max(gap, axial_gap); }
+  double gap_at(const Point& normal) const {
+    return std::abs(dot(normal, axis)) > 0.7 ? axial_gap : gap;
+  }
 };
 
 class Surfaces {
