@@ -100,12 +100,14 @@ void print_turned(const std::map<std::string, body::TurnedBricks>& kinds) {
   for (const auto& [kind, n] : kinds)
     fmt::print("| {} | {} | {} | {:.1f} | {} | {} |\n", kind, n.bricks, n.most, n.most_time, n.last,
                n.ever);
+  for (const auto& [kind, n] : kinds)
+    for (const auto& [title, ever] : n.parts) fmt::print("{}: {}\n", title, ever);
 }
 
 body::TurnedBrickCounter counter_of(const ResultMesh& mesh) {
   std::vector<std::string> title;
   for (const int part : mesh.solid_part) title.push_back(mesh.part_title[std::size_t(part)]);
-  return {mesh.solid, title};
+  return {mesh.solid, std::move(title)};
 }
 
 int joints_command(const JointsCommand& c) {

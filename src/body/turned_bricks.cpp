@@ -26,10 +26,9 @@ std::string kind_of_part(const std::string& title) {
   return "other";
 }
 
-TurnedBrickCounter::TurnedBrickCounter(std::vector<Brick> bricks,
-                                       const std::vector<std::string>& title)
-    : bricks_(std::move(bricks)), ever_(bricks_.size()) {
-  for (const std::string& t : title) {
+TurnedBrickCounter::TurnedBrickCounter(std::vector<Brick> bricks, std::vector<std::string> title)
+    : bricks_(std::move(bricks)), title_(std::move(title)), ever_(bricks_.size()) {
+  for (const std::string& t : title_) {
     kind_.push_back(&kinds_[kind_of_part(t)]);
     ++kind_.back()->bricks;
   }
@@ -42,7 +41,7 @@ void TurnedBrickCounter::take(double time, const std::vector<Point>& nodes,
     if (!alive.empty() && !alive[e]) continue;
     if (!turned_over(corners_of(nodes, bricks_[e]))) continue;
     ++kind_[e]->last;
-    if (!ever_[e]) ++kind_[e]->ever;
+    if (!ever_[e]) ++kind_[e]->ever, ++kind_[e]->parts[title_[e]];
     ever_[e] = true;
   }
   for (auto& [name, kind] : kinds_)

@@ -20,18 +20,19 @@ bool turned_over(const Corners& corners);
 std::string kind_of_part(const std::string& title);
 
 struct TurnedBricks {
-  int bricks = 0;        // of the kind
-  int ever = 0;          // turned over in any state
-  int most = 0;          // turned over in one state, the most
-  double most_time = 0;  // of the first state with the most
-  int last = 0;          // turned over in the last state
+  int bricks = 0;                    // of the kind
+  int ever = 0;                      // turned over in any state
+  int most = 0;                      // turned over in one state, the most
+  double most_time = 0;              // of the first state with the most
+  int last = 0;                      // turned over in the last state
+  std::map<std::string, int> parts;  // turned over in any state, by title of the part
 };
 
 // Counts them over states, by kind of part.
 class TurnedBrickCounter {
  public:
   // title: of the part of each brick
-  TurnedBrickCounter(std::vector<Brick> bricks, const std::vector<std::string>& title);
+  TurnedBrickCounter(std::vector<Brick> bricks, std::vector<std::string> title);
   TurnedBrickCounter(TurnedBrickCounter&&) = default;  // kinds are pointed to: no copy
   // alive: one for each brick, or empty where all are
   void take(double time, const std::vector<Point>& nodes, const std::vector<std::uint8_t>& alive);
@@ -39,6 +40,7 @@ class TurnedBrickCounter {
 
  private:
   std::vector<Brick> bricks_;
+  std::vector<std::string> title_;
   std::map<std::string, TurnedBricks> kinds_;
   std::vector<TurnedBricks*> kind_;  // of each brick
   std::vector<bool> ever_;

@@ -72,6 +72,7 @@ TEST_CASE("turned bricks are counted by kind, at once, at last and ever") {
   CHECK(cartilage.ever == 2);
   CHECK(cartilage.most == 1);
   CHECK(cartilage.last == 1);
+  CHECK(cartilage.parts == std::map<std::string, int>{{"leg.right.hip.cartilage_femur", 2}});
 }
 
 // A knee, a lumbar unit and a rib with its cartilage: every part with bricks has a kind, and none
