@@ -9,7 +9,7 @@
 namespace fabrica {
 namespace {
 
-constexpr char magic[8] = {'F', 'A', 'B', 'R', 'S', 'T', '0', '3'};
+constexpr char magic[8] = {'F', 'A', 'B', 'R', 'S', 'T', '0', '4'};
 
 template <class T>
 void put(std::ostream& out, const T& x) {
