@@ -38,6 +38,12 @@ WallGeometry geometry_of(const RigidWall& w) {
   return g;
 }
 
+// v(n-1/2)
+Vec3d velocity_before(const State& state, int node) {
+  const NodeMotion& a = state.nodes[node];
+  return a.v - (state.mean_dt() * a.inverse_mass) * state.force[node];
+}
+
 }  // namespace
 
 RigidWalls::RigidWalls(const Model& model, const State& state, Diagnostics& diagnostics,
@@ -114,7 +120,7 @@ void RigidWalls::weld(Wall& wall, const WallGeometry& g, const State& state, int
   }
   const NodeMotion& a = state.nodes[hit.node];
   hit.normal = wall_point(g, a.x).normal;
-  hit.v_before = a.v - (state.mean_dt() * a.inverse_mass) * state.force[hit.node];
+  hit.v_before = velocity_before(state, hit.node);
   hit.added = -dot(a.v - wall.velocity, hit.normal), hit.deep = false;
 }
 
@@ -171,7 +177,7 @@ bool RigidWalls::find_ahead(const Wall& wall, const WallGeometry& g, const State
   const double vn = dot(a.v - wall.velocity, next.normal);
   const double added = std::max(-vn, deep ? 0.0 : -next.distance / state.dt);
   if (added <= 0) return false;
-  const Vec3d before = a.v - (state.mean_dt() * a.inverse_mass) * state.force[node];
+  const Vec3d before = velocity_before(state, node);
   hit = {node, next.normal, before, added, deep};
   return true;
 }
@@ -182,7 +188,7 @@ bool RigidWalls::find_behind(const Wall& wall, const WallGeometry& g, const Stat
   const NodeMotion& a = state.nodes[node];
   const WallPoint now = wall_point(g, a.x);
   if (now.distance >= 0 || !now.on_wall) return false;
-  const Vec3d before = a.v - (state.mean_dt() * a.inverse_mass) * state.force[node];
+  const Vec3d before = velocity_before(state, node);
   const double came = -dot(before - wall.velocity, now.normal);
   if (came <= 0) return false;
   const double way = came * state.dt_previous;
