@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/pack.h"
+#include "base/team.h"
 
 namespace fabrica {
 namespace {
@@ -15,14 +16,18 @@ double seconds_since(Clock::time_point t) {
   return std::chrono::duration<double>(Clock::now() - t).count();
 }
 
-double triad() {
+double triad(int threads) {
   const std::size_t n = 8'000'000;  // 192 MB in all: beyond the caches
   std::vector<double> a(n, 1), b(n, 2), c(n, 3);
+  Team team(threads);
   double best = 0;
   for (int pass = 0; pass < 6; ++pass) {
     const auto start = Clock::now();
-    for (std::size_t i = 0; i < n; ++i) a[i] = b[i] + 2.0 * c[i];
-    asm volatile("" : : "r"(a.data()) : "memory");
+    team.for_each(threads, [&](int share, int) {
+      const std::size_t first = n * share / threads, end = n * (share + 1) / threads;
+      for (std::size_t i = first; i < end; ++i) a[i] = b[i] + 2.0 * c[i];
+      asm volatile("" : : "r"(a.data()) : "memory");
+    });
     best = std::max(best, 24.0 * double(n) / seconds_since(start) / 1e9);
   }
   return best;
@@ -46,7 +51,7 @@ double peak() {
 
 }  // namespace
 
-Machine measure_machine() {
+Machine measure_machine(const std::vector<int>& threads) {
   Machine m;
   std::ifstream cpu("/proc/cpuinfo");
   for (std::string line; std::getline(cpu, line);)
@@ -59,7 +64,7 @@ Machine measure_machine() {
 #else
   m.instruction_set = "AVX2";
 #endif
-  m.triad = triad();
+  for (const int t : threads) m.triad[t] = triad(t);
   m.peak = peak();
   return m;
 }

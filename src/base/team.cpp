@@ -10,7 +10,10 @@
 namespace fabrica {
 namespace {
 
-constexpr std::chrono::microseconds spin_time{30};
+using Clock = std::chrono::steady_clock;
+
+// about what it takes to wake a thread that has given its core away
+constexpr std::chrono::microseconds spin_time{100};
 
 void relax() {
 #if defined(__x86_64__)
@@ -20,14 +23,14 @@ void relax() {
 
 // waits for done() without giving the core away; false when that has taken too long
 template <class Done>
-bool spin(Done done) {
-  const auto give_up = std::chrono::steady_clock::now() + spin_time;
+bool spin(Done done, Clock::duration longest = spin_time) {
+  const auto give_up = Clock::now() + longest;
   do {
     for (int i = 0; i < 32; ++i) {
       if (done()) return true;
       relax();
     }
-  } while (std::chrono::steady_clock::now() < give_up);
+  } while (Clock::now() < give_up);
   return done();
 }
 
@@ -44,25 +47,32 @@ Team::~Team() {
   for (auto& t : threads_) t.join();
 }
 
-void Team::start(int chunks, Function function, void* data) {
+void Team::start(int chunks, Function function, void* data, bool own) {
   function_ = function, data_ = data, chunks_ = chunks;
+  own_.store(own, std::memory_order_relaxed);
   done_.store(0, std::memory_order_relaxed);
   for (int t = 0; t < size_; ++t) {
-    const std::uint64_t first = std::uint64_t(chunks) * t / size_,
-                        end = std::uint64_t(chunks) * (t + 1) / size_;
+    const std::uint64_t first = std::uint64_t(share_first(chunks, t, size_)),
+                        end = std::uint64_t(share_first(chunks, t + 1, size_));
     shares_[t].ticket.store((end << 32) + first, std::memory_order_release);
   }
   loop_.fetch_add(1, std::memory_order_release);
   loop_.notify_all();
-  work(0);
-  if (spin([&] { return done_.load(std::memory_order_acquire) == chunks; })) return;
-  for (int done; (done = done_.load(std::memory_order_acquire)) != chunks;)
-    done_.wait(done, std::memory_order_acquire);
+  const auto done = [&] { return done_.load(std::memory_order_acquire) == chunks; };
+  if (own) {
+    const auto begin = Clock::now();
+    work(0, false);
+    if (spin(done, std::min<Clock::duration>(Clock::now() - begin, spin_time))) return;
+  }
+  work(0, true);
+  if (spin(done)) return;
+  for (int n; (n = done_.load(std::memory_order_acquire)) != chunks;)
+    done_.wait(n, std::memory_order_acquire);
 }
 
-void Team::work(int thread) {
-  // first the own share, then those of the others
-  for (int k = 0; k < size_; ++k) {
+// first the own share, then those of the others
+void Team::work(int thread, bool help) {
+  for (int k = 0; k < (help ? size_ : 1); ++k) {
     std::atomic<std::uint64_t>& ticket = shares_[(thread + k) % size_].ticket;
     for (;;) {
       const std::uint64_t taken = ticket.fetch_add(1, std::memory_order_acq_rel);
@@ -83,7 +93,7 @@ void Team::worker(int thread) {
       loop_.wait(seen, std::memory_order_acquire);
     seen = loop_.load(std::memory_order_acquire);
     if (stop_.load()) return;
-    work(thread);
+    work(thread, !own_.load(std::memory_order_relaxed));
   }
 }
 

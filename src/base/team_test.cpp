@@ -22,6 +22,10 @@ TEST_CASE("team: every chunk runs exactly once") {
         if (thread >= 0 && thread < threads) ++runs[std::size_t(chunk)];
       });
       for (const int r : runs) REQUIRE(r == 1);
+      team.for_each_own(chunks, [&](int chunk, int thread) {
+        if (thread >= 0 && thread < threads) ++runs[std::size_t(chunk)];
+      });
+      for (const int r : runs) REQUIRE(r == 2);
       if (loop % 200 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
   }
@@ -57,5 +61,38 @@ TEST_CASE("team: every thread begins with its own share") {
     });
     for (int t = 0; t < threads; ++t) REQUIRE(begun[std::size_t(t)] == chunks * t / threads);
     for (const int r : runs) REQUIRE(r == 1);
+  }
+}
+
+// Chunks of their own: the caller leaves them to the others until they are late, and they leave the
+// caller's to it.
+TEST_CASE("team: loops of own chunks") {
+  const int chunks = 40, half = chunks / 2;
+  Team team(2);
+  for (int loop = 0; loop < 20; ++loop) {
+    std::vector<int> by(chunks, -1);
+    std::atomic<int> done{0};
+    std::atomic<bool> begun{false};
+    // the second thread holds its first chunk until all others are done
+    team.for_each_own(chunks, [&](int chunk, int thread) {
+      by[std::size_t(chunk)] = thread;
+      if (chunk == 0)
+        while (!begun) std::this_thread::yield();
+      if (chunk == half) {
+        begun = true;
+        while (done < chunks - 1) std::this_thread::yield();
+      }
+      ++done;
+    });
+    for (int c = 0; c < chunks; ++c) REQUIRE(by[std::size_t(c)] == (c == half ? 1 : 0));
+    // the caller holds its first chunk until the second thread has done its share
+    done = 0;
+    team.for_each_own(chunks, [&](int chunk, int thread) {
+      by[std::size_t(chunk)] = thread;
+      if (chunk == 0)
+        while (done < chunks - half) std::this_thread::yield();
+      ++done;
+    });
+    for (int c = 0; c < chunks; ++c) REQUIRE(by[std::size_t(c)] == (c < half ? 0 : 1));
   }
 }

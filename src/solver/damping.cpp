@@ -73,7 +73,7 @@ void MassDamping::apply(State& state, RigidBodies& bodies, Team& team) {
   const int n = int(state.nodes.size()), chunks = (n + chunk_nodes - 1) / chunk_nodes;
   const double dt = state.mean_dt();
   partial_.assign(chunks, 0);
-  team.for_each(chunks, [&](int c, int) {
+  team.for_each_own(chunks, [&](int c, int) {
     double work = 0;
     // v holds v- + dt f/m: damps it and returns twice the mean work rate with the last force
     auto damp = [&](Vec3d& v, const Vec3d& f, double mass, double extra, const double* d,

@@ -155,7 +155,7 @@ void Loads::body_forces(State& state, RigidBodies& bodies, Team& team) {
     const double a = -value(load.curve, load.scale, state.time);
     if (a == 0 && g.last == 0) continue;
     partial_.assign(chunks, 0);
-    team.for_each(chunks, [&](int c, int) {
+    team.for_each_own(chunks, [&](int c, int) {
       double power = 0;
       for (int k = c * chunk_nodes; k < std::min(n, (c + 1) * chunk_nodes); ++k) {
         if (state.owner[k] == NodeOwner::rigid || (!g.on_node.empty() && !g.on_node[k])) continue;

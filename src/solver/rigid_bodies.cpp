@@ -66,7 +66,7 @@ double RigidBodies::kinetic_energy() const {
 }
 
 void RigidBodies::gather(State& state, Team& team) {
-  team.for_each(int(chunks_.size()), [&](int c, int) {
+  team.for_each_own(int(chunks_.size()), [&](int c, int) {
     const Chunk& chunk = chunks_[c];
     const RigidBody& b = bodies_[chunk.body];
     Vec3d force{}, moment{};
@@ -128,7 +128,7 @@ double RigidBodies::place_nodes(State& state, Team& team) {
   }
   const double rate = state.dt > 0 ? 1 / state.dt : 0;
   std::vector<double> fastest(chunks_.size(), 0);
-  team.for_each(int(chunks_.size()), [&](int c, int) {
+  team.for_each_own(int(chunks_.size()), [&](int c, int) {
     const Chunk& chunk = chunks_[c];
     const RigidBody& b = bodies_[chunk.body];
     if (!b.active) return;

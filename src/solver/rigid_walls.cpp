@@ -127,7 +127,7 @@ void RigidWalls::weld(Wall& wall, const WallGeometry& g, const State& state, int
 double RigidWalls::highest_speed(const State& state, Team& team) {
   const int n = int(state.nodes.size()), chunks = chunk_count(n);
   std::vector<double> highest(chunks, 0);
-  team.for_each(chunks, [&](int c, int) {
+  team.for_each_own(chunks, [&](int c, int) {
     double h = 0;
     for (int i = c * chunk_nodes; i < std::min(n, (c + 1) * chunk_nodes); ++i)
       h = std::max(h, dot(state.nodes[i].v, state.nodes[i].v));

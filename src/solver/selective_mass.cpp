@@ -16,7 +16,7 @@ int chunks_of(std::size_t n) { return int((n + chunk_nodes - 1) / chunk_nodes); 
 // calls fn(chunk, first, last) for fixed chunks of 0..n
 template <class Fn>
 void for_chunks(Team& team, std::size_t n, Fn fn) {
-  team.for_each(chunks_of(n), [&](int c, int) {
+  team.for_each_own(chunks_of(n), [&](int c, int) {
     fn(c, c * chunk_nodes, std::min(int(n), (c + 1) * chunk_nodes));
   });
 }

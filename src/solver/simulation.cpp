@@ -14,8 +14,8 @@ int chunks_of(int n) { return (n + chunk_size - 1) / chunk_size; }
 // calls fn(first, last) for fixed chunks of 0..n
 template <class Fn>
 void for_chunks(Team& team, int n, Fn fn) {
-  team.for_each(chunks_of(n),
-                [&](int c, int) { fn(c * chunk_size, std::min(n, (c + 1) * chunk_size)); });
+  team.for_each_own(chunks_of(n),
+                    [&](int c, int) { fn(c * chunk_size, std::min(n, (c + 1) * chunk_size)); });
 }
 
 // What scales the fixed-point sums: the force that moves a node by a mean element length in one

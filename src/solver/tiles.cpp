@@ -325,7 +325,6 @@ TileView Tiles::view_of(const Tile& t, const NodeRecord* nodes, const SpinRecord
 }
 
 NodesAhead Tiles::nodes_of(const State& state, int tile) const {
-  if (tile >= int(tiles.size())) return {};
   const Tile& t = tiles[tile];
   const bool rotations = classes[t.tile_class].kernel->rotations();
   return {&node[t.node_first], t.node_count, state.nodes.data(),
@@ -345,16 +344,37 @@ void Tiles::nodal_rates(State& state, Team& team) {
   nodal_pressure_.advance(*this, state.dt_previous, team);
 }
 
+// Nodes are shared out in the order of their numbers, so tiles are too: a thread finds the nodes of
+// its tiles where it moved them and not in the caches of another. Within a share neighbours follow
+// each other as bisection left them.
+void Tiles::arrange(int shares) {
+  const int n = int(tiles.size());
+  std::vector<double> middle(n);  // mean node number
+  for (int i = 0; i < n; ++i) {
+    const auto first = node.begin() + tiles[i].node_first;
+    middle[i] = std::accumulate(first, first + tiles[i].node_count, 0.0) / tiles[i].node_count;
+  }
+  order_.resize(n);
+  std::iota(order_.begin(), order_.end(), 0);
+  std::stable_sort(order_.begin(), order_.end(),
+                   [&](int a, int b) { return middle[a] < middle[b]; });
+  for (int s = 0; s < shares; ++s)
+    std::sort(order_.begin() + Team::share_first(n, s, shares),
+              order_.begin() + Team::share_first(n, s + 1, shares));
+  shares_ = shares;
+}
+
 void Tiles::forces(State& state, Team& team) {
   if (!nodal_tiles_.empty()) nodal_rates(state, team);
+  if (shares_ != team.size()) arrange(team.size());
   team.for_each(int(tiles.size()), [&](int i, int) {
-    Tile& t = tiles[i];
+    Tile& t = tiles[order_[i]];
     const TileClass& c = classes[t.tile_class];
     Scratch& s = scratch(t.node_count);
     fetch_history(state_.data() + t.state, c.fields);
     fill_nodes(state, t, s.nodes.data(), c.kernel->rotations() ? s.spins.data() : nullptr);
     TileView view = view_of(t, s.nodes.data(), s.spins.data());
-    view.ahead = nodes_of(state, i + 1);
+    if (i + 1 < int(order_.size())) view.ahead = nodes_of(state, order_[i + 1]);
     if (c.kernel->nodal_pressure()) {
       view.node_rate = nodal_pressure_.rate(t.node_first);
       view.node_pressure = nodal_pressure_.pressure(t.node_first);

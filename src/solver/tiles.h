@@ -103,7 +103,10 @@ class Tiles {
   NodesAhead nodes_of(const State& state, int tile) const;
   void nodal_rates(State& state, Team& team);
   std::vector<double> mass_, inertia_;
+  void arrange(int shares);
   std::vector<int> nodal_tiles_;
+  std::vector<int> order_;  // in which tiles are worked off; results do not depend on it
+  int shares_ = 0;          // threads that the order was made for
   NodalPressure nodal_pressure_;
 };
 
