@@ -189,7 +189,7 @@ void TiedNodes::add(int index, const ContactSurface& tracked, const ContactSurfa
     const ContactSegment& s = reference.segments[segment];
     if (s.body >= 0 && s.body == n.body) continue;
     if (s.body >= 0 && n.body < 0 && s.body < int(model_.parts.size())) {
-      rigid_ties_.push_back({n.node, s.part});
+      rigid_ties_.push_back({n.node, s.body});
       continue;
     }
     Tie t{};

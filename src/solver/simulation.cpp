@@ -73,7 +73,7 @@ Simulation::Simulation(const Model& model, const RunOptions& options, Diagnostic
   if (mass_scaling_.active()) initial_step_ = std::max(initial_step_, mass_scaling_.step());
   rigid_bodies_ = std::make_unique<RigidBodies>(model, state_, diagnostics);
   contacts_ = std::make_unique<Contacts>(model, state_, contact_input(), diagnostics);
-  for (const RigidTie& t : contacts_->rigid_ties()) rigid_bodies_->add_node(state_, t.part, t.node);
+  add_rigid_ties(diagnostics);
   mass_scaling_.settle(state_);
   rigid_bodies_->finish(state_, diagnostics);
   joints_ = std::make_unique<Joints>(model, *rigid_bodies_, diagnostics);
@@ -91,6 +91,19 @@ Simulation::Simulation(const Model& model, const RunOptions& options, Diagnostic
   part_internal_.assign(model.parts.size(), 0);
   part_hourglass_.assign(model.parts.size(), 0);
   part_eroded_internal_.assign(model.parts.size(), 0);
+}
+
+// Nodes tied to the surface of a rigid body go with it.
+void Simulation::add_rigid_ties(Diagnostics& diagnostics) {
+  int refused = 0;
+  for (const RigidTie& t : contacts_->rigid_ties())
+    refused += !rigid_bodies_->add_node(state_, t.part, t.node);
+  if (refused > 0)
+    diagnostics.warning(
+        "untied-nodes", {}, "CONTACT_TIED", "",
+        std::to_string(refused) +
+            " nodes tied to a rigid body are held by something else, which keeps them",
+        "Leave them out of one of the two");
 }
 
 void Simulation::set_up_masses(Diagnostics& diagnostics) {

@@ -119,6 +119,7 @@ class Simulation {
   void check_health();
   void remember_velocities();
   void update_energies();
+  void add_rigid_ties(Diagnostics& diagnostics);
   void set_up_masses(Diagnostics& diagnostics);
   double smallest_element_step();
   double first_step();

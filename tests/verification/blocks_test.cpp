@@ -138,3 +138,34 @@ TEST_CASE("V56: a tie of unlike meshes is as stiff as one mesh") {
     CHECK(std::abs(two / one - 1) < 0.01);
   }
 }
+
+// A block whose nodes all belong to a rigid body, as extra nodes, still is a surface to tie to: a
+// second block tied to its face goes where the body goes.
+TEST_CASE("a tie to a block that is potted whole carries") {
+  Deck deck;
+  deck.end(1.0);
+  deck.key("SECTION_SOLID").card(1, 1);
+  deck.key("MAT_ELASTIC").card(1, 1e-3, 1.0, 0.3);
+  deck.key("MAT_RIGID").card(2, 1e-3, 1.0, 0.3).card(1, 4, 7).card(0);
+  deck.part(1, 1, 1).part(2, 1, 1).part(3, 1, 2);
+  const auto free = [](int, int, int) { return 0; };
+  const auto block = [&](int part, double z) {
+    return bricks(
+        deck, 2, 2, 1, [&](int i, int j, int k) { return Vec3d(0.5 * i, 0.5 * j, z + k); }, free,
+        part);
+  };
+  const Grid potted = block(1, 0), tied = block(2, 1);
+  block(3, -5);
+  deck.node_set(1, potted.ids);
+  deck.key("CONSTRAINED_EXTRA_NODES_SET").card(3, 1);
+  deck.key("CONTACT_TIED_SURFACE_TO_SURFACE").card(2, 1, 3, 3).card(0).card(0);
+  deck.curve(1, {{0, 0}, {1, 0.5}});
+  deck.key("BOUNDARY_PRESCRIBED_MOTION_RIGID").card(3, 3, 2, 1);
+  Run run(deck);
+  run.finish();
+  const double travelled = run.displacement(potted.at(0, 0, 0)).z;
+  CHECK(travelled == doctest::Approx(0.5).epsilon(0.01));
+  for (int i = 0; i <= 2; ++i)
+    for (int j = 0; j <= 2; ++j)
+      CHECK(run.displacement(tied.at(i, j, 0)).z == doctest::Approx(travelled).epsilon(1e-9));
+}
