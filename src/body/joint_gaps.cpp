@@ -59,7 +59,10 @@ std::vector<JointRow> joint_rows(const Body& body, const AssembledBody& assemble
   const std::vector<Articulation> joints = articulations(body.bones);
   for (std::size_t k = 0; k < body.joined.articulations.size(); ++k) {
     const ArticulationReport& made = body.joined.articulations[k];
-    if (!made.omitted.empty() || joints[k].kind == ArticulationKind::arch) continue;
+    // what a layer joins stands with the ties
+    if (!made.omitted.empty() || joints[k].kind == ArticulationKind::arch ||
+        joints[k].kind == ArticulationKind::grown)
+      continue;
     rows.push_back(
         {made.name,
          joints[k].kind == ArticulationKind::joined ? JointKind::tied : JointKind::sliding,

@@ -15,9 +15,10 @@ ArticulationKind kind_of(const Table& table, int row) {
   if (kind == "facet") return ArticulationKind::facet;
   if (kind == "arch") return ArticulationKind::arch;
   if (kind == "joined") return ArticulationKind::joined;
+  if (kind == "grown") return ArticulationKind::grown;
   if (kind == "symphysis") return ArticulationKind::symphysis;
-  table.fail(row,
-             "kind is \"" + kind + "\": one of sliding, meniscal, facet, arch, joined, symphysis");
+  table.fail(row, "kind is \"" + kind +
+                      "\": one of sliding, meniscal, facet, arch, joined, grown, symphysis");
 }
 
 // a bone of one side, else of the midline; "_L" at the end of a name asks for the left one

@@ -8,8 +8,9 @@
 
 namespace fabrica::body {
 
-// meniscal: sliding, with menisci between that the second bone carries
-enum class ArticulationKind { sliding, meniscal, facet, arch, joined, symphysis };
+// meniscal: sliding, with menisci between that the second bone carries; grown: one layer that both
+// bones have grown to
+enum class ArticulationKind { sliding, meniscal, facet, arch, joined, grown, symphysis };
 
 struct Articulation {
   std::string name;  // of the row

@@ -21,6 +21,7 @@ namespace fabrica::body {
 namespace {
 
 constexpr double contact_gap = 0.1;      // [mm] left between layers of cartilage
+constexpr double tied_gap = 0.05;        // [mm] left between a layer and the bone it is tied to
 constexpr double thinnest = 0.15;        // [mm] of a layer
 constexpr double under_meniscus = 1;     // [mm] of a layer that leaves room for a meniscus
 constexpr double least_jacobian = 0.36;  // of its bricks
@@ -51,10 +52,12 @@ class ArticulationMaker {
   void sliding(const Articulation& joint, const Patch& a, const Patch& b,
                ArticulationReport& report);
   void joined(const Articulation& joint, ArticulationReport& report);
+  void grown(const Articulation& joint, const Patch& a, ArticulationReport& report);
   void symphysis(const Articulation& joint, const Patch& a);
   void capsule(const Articulation& joint, const Patch& a, const Patch& b);
   std::vector<int> nodes_of(int bone, const Patch& patch) const;
   std::array<PieceNode, 4> quad_of(int bone, int quad) const;
+  SurfacePatch faces_around(int bone, const std::vector<PieceNode>& nodes);
   const PlacedBone& bone(int index) const { return bones_[std::size_t(index)]; }
   std::string name(const Articulation& joint) const {
     return fmt::format("{}.{}.{}", name_of(bone(joint.a).region), name_of(joint.side), joint.name);
@@ -161,7 +164,8 @@ std::vector<std::array<PieceNode, 4>> ArticulationMaker::layer(const Articulatio
     normal = (1 / norm(normal)) * normal;
     const SurfacePoint there = surface_[other].nearest(p, 4 * joint.reach);
     const double distance = there.quad < 0 ? 2 * joint.reach : there.distance;
-    const double room = 0.5 * (distance - contact_gap);
+    const double room = joint.kind == ArticulationKind::grown ? distance - tied_gap
+                                                              : 0.5 * (distance - contact_gap);
     if (room < thinnest) {
       crowded.insert(node);
       continue;
@@ -193,7 +197,7 @@ std::vector<std::array<PieceNode, 4>> ArticulationMaker::layer(const Articulatio
   builder.piece.name = name(joint) + ".cartilage_" + here.mesh.name;
   builder.piece.region = here.region;
   builder.piece.kind = PieceKind::brick;
-  builder.piece.law = joint_law("cartilage");
+  builder.piece.law = joint_law(joint.kind == ArticulationKind::grown ? "sacroiliac" : "cartilage");
   builder.piece.bone_a = builder.piece.bone_b = part_name(here, "");
   builder.piece.source = joint.source;
   for (const auto& brick : builder.piece.bricks) {
@@ -236,6 +240,35 @@ void ArticulationMaker::sliding(const Articulation& joint, const Patch& a, const
   capsule(joint, a, b);
 }
 
+// faces of a bone with a corner of those that are nearest to the nodes
+SurfacePatch ArticulationMaker::faces_around(int index, const std::vector<PieceNode>& nodes) {
+  const auto& quads = bone(index).mesh.surface;
+  std::set<int> around;
+  for (const PieceNode& n : nodes) {
+    const int quad = surface_[index].nearest(n.x, 30).quad;
+    around.insert(quads[std::size_t(quad)].begin(), quads[std::size_t(quad)].end());
+  }
+  SurfacePatch faces;
+  for (std::size_t q = 0; q < quads.size(); ++q)
+    if (std::any_of(quads[q].begin(), quads[q].end(), [&](int n) { return around.count(n) > 0; }))
+      faces.quads.push_back(quad_of(index, int(q)));
+  return faces;
+}
+
+// A layer on a whose outer nodes follow the faces of b.
+void ArticulationMaker::grown(const Articulation& joint, const Patch& a,
+                              ArticulationReport& report) {
+  report.contact_gap = 1e30;
+  Tie tie;
+  tie.name = name(joint);
+  std::set<int> seen;
+  for (const auto& face : layer(joint, joint.a, joint.b, a, joint.cartilage_a, report.contact_gap))
+    for (const PieceNode& n : face)
+      if (seen.insert(n.node).second) tie.a.push_back(n);
+  tie.b = faces_around(joint.b, tie.a);
+  between_.ties.push_back(std::move(tie));
+}
+
 // The nodes of a that lie nearest to b (within 3 mm of the nearest, at least six) follow the faces
 // of b that lie nearest to them.
 void ArticulationMaker::joined(const Articulation& joint, ArticulationReport& report) {
@@ -248,19 +281,13 @@ void ArticulationMaker::joined(const Articulation& joint, ArticulationReport& re
   std::sort(near.begin(), near.end());
   Tie tie;
   tie.name = name(joint);
-  std::set<int> around;
   for (std::size_t i = 0; i < near.size(); ++i) {
     const auto [distance, node] = near[i];
     if (i >= 6 && distance > near.front().first + 3) break;
     if (!tied_.insert({joint.a, node}).second) continue;  // a node follows one surface
     tie.a.push_back(bone_node(bones_, joint.a, node));
-    const int quad = surface_[joint.b].nearest(bone(joint.a).nodes[std::size_t(node)], 30).quad;
-    for (int n : bone(joint.b).mesh.surface[std::size_t(quad)]) around.insert(n);
   }
-  const auto& quads = bone(joint.b).mesh.surface;
-  for (std::size_t q = 0; q < quads.size(); ++q)
-    if (std::any_of(quads[q].begin(), quads[q].end(), [&](int n) { return around.count(n) > 0; }))
-      tie.b.quads.push_back(quad_of(joint.b, int(q)));
+  tie.b = faces_around(joint.b, tie.a);
   report.faces_a = int(tie.a.size()), report.faces_b = int(tie.b.quads.size());
   if (tie.a.empty()) {
     report.omitted = "no nodes within 30 mm";
@@ -394,6 +421,8 @@ ArticulationReport ArticulationMaker::add(const Articulation& joint) {
   }
   if (joint.kind == ArticulationKind::symphysis)
     symphysis(joint, a);
+  else if (joint.kind == ArticulationKind::grown)
+    grown(joint, a, report);
   else
     sliding(joint, a, b, report);
   return report;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "body/joints/bone_surface.h"
+#include "body/joints/cartilage.h"
 #include "body/joints/join_bones.h"
 #include "body/joints/joint_law.h"
 #include "body/joints/ligament_law.h"
@@ -301,6 +302,33 @@ TEST_CASE("pubic bones come to the width of a symphysis") {
   CHECK(fit_symphysis(bones) == Approx(0));
 }
 
+// Blocks 2 mm apart: the layer fills the gap, is as large as their faces and tied all over.
+TEST_CASE("a joint that both bones have grown to is one layer tied to the second") {
+  std::vector<PlacedBone> bones{block("hip_bone", {0, 0, 0}, 12, 4),
+                                block("sacrum", {0, 14, 0}, 12, 4)};
+  bones[0].side = Side::right, bones[1].side = Side::midline;
+  BetweenBones between;
+  const auto reports = add_articulations(bones, between);
+  REQUIRE(reports.size() == 1);
+  CHECK(reports[0].omitted.empty());
+  CHECK(between.contacts.empty());
+  REQUIRE(between.pieces.size() == 1);
+  REQUIRE(between.ties.size() == 1);
+  const Piece& layer = between.pieces[0];
+  CHECK(layer.law.keyword == "MAT_OGDEN_RUBBER");
+  double volume = 0;
+  for (const auto& b : layer.bricks) {
+    Corners corners;
+    for (std::size_t i = 0; i < 8; ++i) corners[i] = layer.nodes[std::size_t(b[i])].x;
+    volume += volume_of(corners);
+  }
+  CHECK(layer.bricks.size() == 16);
+  CHECK(volume == Approx(12 * 12 * 1.95));
+  CHECK(between.ties[0].a.size() == 25);
+  for (const PieceNode& n : between.ties[0].a) CHECK(n.x.y == Approx(13.95));
+  CHECK(between.ties[0].b.quads.size() >= 16);
+}
+
 TEST_CASE("every row of the tables of joints names bones and a law that exist") {
   std::set<std::string> known(bone_names().begin(), bone_names().end());
   known.insert("hip_bone_L");
@@ -313,7 +341,7 @@ TEST_CASE("every row of the tables of joints names bones and a law that exist") 
       CHECK(!table.text(row, "source").empty());
     }
   }
-  for (const char* law : {"nucleus", "annulus", "cartilage", "symphysis"})
+  for (const char* law : {"nucleus", "annulus", "cartilage", "sacroiliac", "symphysis"})
     CHECK(joint_law(law).fields.size() >= 3);
   CHECK_THROWS_AS(joint_law("ivory"), BodyError);
 }
