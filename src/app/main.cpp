@@ -10,6 +10,7 @@
 #include "app/show.h"
 #include "app/signals.h"
 #include "app/study.h"
+#include "model/wall_method.h"
 
 namespace {
 
@@ -31,7 +32,7 @@ void add_run(CLI::App& app, fabrica::RunCommand& c) {
   run->add_option("--walls", c.walls,
                   "how rigid walls stop nodes: impulse (before they are behind, Coulomb friction), "
                   "constraint (put back once found behind, as LS-DYNA is described to)")
-      ->check(CLI::IsMember({"impulse", "constraint"}))
+      ->check(CLI::IsMember(fabrica::wall_method_names()))
       ->capture_default_str();
   run->add_flag("--quiet", c.quiet, "no progress lines");
   run->callback([&c] { throw CLI::RuntimeError(fabrica::run_command(c)); });

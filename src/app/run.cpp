@@ -182,6 +182,8 @@ nlohmann::ordered_json summary(const Simulation& s, double wall, std::int64_t fi
     j["selective_mass_iterations"] = m.mean_iterations();
     j["selective_mass_steps_not_converged"] = m.unconverged();
   }
+  if (s.rigid_walls().size() > 0)
+    j["rigid_wall_method"] = wall_method_names()[std::size_t(s.rigid_walls().method())];
   j["hash"] = fmt::format("{:016x}", s.state_hash());
   return j;
 }
@@ -272,7 +274,8 @@ int run_command(const RunCommand& c) {
   RunOptions options;
   options.threads = c.threads > 0 ? c.threads : int(std::thread::hardware_concurrency());
   options.end_time = c.until;
-  options.walls = c.walls == "constraint" ? WallMethod::constraint : WallMethod::impulse;
+  const auto& methods = wall_method_names();
+  options.walls = WallMethod(std::find(methods.begin(), methods.end(), c.walls) - methods.begin());
   Simulation simulation(*model, options, diagnostics);
   for (std::size_t i = printed; i < diagnostics.list().size(); ++i)
     fmt::print(stderr, "{}\n", diagnostics.format(diagnostics.list()[i]));

@@ -18,10 +18,9 @@
 #include "constraint/wall.h"
 #include "model/model.h"
 #include "model/state.h"
+#include "model/wall_method.h"
 
 namespace fabrica {
-
-enum class WallMethod { impulse, constraint };
 
 class RigidWalls {
  public:
@@ -36,6 +35,7 @@ class RigidWalls {
   void apply(State& state, Team& team, double max_speed = -1);
 
   int size() const { return int(walls_.size()); }
+  WallMethod method() const { return method_; }
   // Force of the nodes on the wall in the last cycle, global components.
   const Vec3d& force(int wall) const { return walls_[wall].force; }
   // Its part against the wall's normal, positive in compression (planes).

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "model/wall_method.h"
 #include "study/measure.h"
 #include "study/toml_fields.h"
 
@@ -126,8 +127,8 @@ void need_files(const Fields& f, const Case& c) {
 }  // namespace
 
 std::string read_walls(Fields& f) {
-  const std::string walls = f.text("walls", "impulse");
-  f.one_of("walls", walls, {"impulse", "constraint"});
+  const std::string walls = f.text("walls", wall_method_names().front());
+  f.one_of("walls", walls, wall_method_names());
   return walls;
 }
 

@@ -125,7 +125,7 @@ std::string run_section(const Outcome& o, const PageExtras& e) {
   row("element updates a second", "updates_per_second");
   row("energy ratio", "energy_ratio"), row("hourglass energy", "hourglass_energy");
   row("internal energy", "internal_energy"), row("added mass [%]", "added_mass_percent");
-  row("hash of the last state", "hash");
+  row("rigid walls stop nodes by", "rigid_wall_method"), row("hash of the last state", "hash");
   for (const auto& finding : o.summary.value("findings", nlohmann::ordered_json::array()))
     rows.push_back({"finding", escaped(finding.get<std::string>())});
   std::string out = "<h2>Run</h2>\n" + table({}, rows);
