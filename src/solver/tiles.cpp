@@ -366,7 +366,7 @@ void Tiles::arrange(int shares) {
 
 void Tiles::forces(State& state, Team& team) {
   if (!nodal_tiles_.empty()) nodal_rates(state, team);
-  if (shares_ != team.size()) arrange(team.size());
+  if (shares_ != team.size() || order_.size() != tiles.size()) arrange(team.size());
   team.for_each(int(tiles.size()), [&](int i, int) {
     Tile& t = tiles[order_[i]];
     const TileClass& c = classes[t.tile_class];

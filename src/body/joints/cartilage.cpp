@@ -197,7 +197,7 @@ std::vector<std::array<PieceNode, 4>> ArticulationMaker::layer(const Articulatio
   builder.piece.name = name(joint) + ".cartilage_" + here.mesh.name;
   builder.piece.region = here.region;
   builder.piece.kind = PieceKind::brick;
-  builder.piece.law = joint_law(joint.kind == ArticulationKind::grown ? "sacroiliac" : "cartilage");
+  builder.piece.law = joint_law(joint.kind == ArticulationKind::grown ? joint.name : "cartilage");
   builder.piece.bone_a = builder.piece.bone_b = part_name(here, "");
   builder.piece.source = joint.source;
   for (const auto& brick : builder.piece.bricks) {
@@ -265,6 +265,10 @@ void ArticulationMaker::grown(const Articulation& joint, const Patch& a,
   for (const auto& face : layer(joint, joint.a, joint.b, a, joint.cartilage_a, report.contact_gap))
     for (const PieceNode& n : face)
       if (seen.insert(n.node).second) tie.a.push_back(n);
+  if (tie.a.empty()) {
+    report.omitted = "no room for its layer";
+    return;
+  }
   tie.b = faces_around(joint.b, tie.a);
   between_.ties.push_back(std::move(tie));
 }
