@@ -74,15 +74,20 @@ void Team::start(int chunks, Function function, void* data, bool own) {
 void Team::work(int thread, bool help) {
   for (int k = 0; k < (help ? size_ : 1); ++k) {
     std::atomic<std::uint64_t>& ticket = shares_[(thread + k) % size_].ticket;
+    // counted here and told once: the count of all goes from cache to cache
+    int finished = 0;
     for (;;) {
       const std::uint64_t taken = ticket.fetch_add(1, std::memory_order_acq_rel);
       const int end = int(taken >> 32), chunk = int(taken & 0xffffffffu);
       if (chunk >= end) break;
-      // those who wait are told by the last chunk alone; the number is of the loop that it is of
-      const int chunks = chunks_;
       function_(data_, chunk, thread);
-      if (done_.fetch_add(1, std::memory_order_acq_rel) + 1 == chunks) done_.notify_one();
+      ++finished;
     }
+    if (finished == 0) continue;
+    // those who wait are told by the last chunk alone; the number is of the loop that it is of
+    const int chunks = chunks_;
+    if (done_.fetch_add(finished, std::memory_order_acq_rel) + finished == chunks)
+      done_.notify_one();
   }
 }
 

@@ -4,9 +4,11 @@
 // made in chunk order. Every thread begins with its own share, the same one in every loop of that
 // many chunks, so that what it wrote last time lies in its own caches; who is done takes from the
 // shares of others, in one kind of loop at once, in the other only when they are late.
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <thread>
+#include <type_traits>
 #include <vector>
 
 namespace fabrica {
@@ -31,6 +33,14 @@ class Team {
   void for_each_own(int chunks, Fn&& fn) {
     run(chunks, fn, true);
   }
+  // Chunks of their own that are ranges of at most `size` of 0 .. n: calls fn(chunk, first, last).
+  template <class Fn>
+  void for_ranges(std::size_t n, int size, Fn&& fn) {
+    for_each_own(ranges(n, size), range_of(n, size, fn));
+  }
+  static int ranges(std::size_t n, int size) {
+    return int((n + std::size_t(size) - 1) / std::size_t(size));
+  }
   // first chunk of a thread's own share
   static int share_first(int chunks, int thread, int threads) {
     return int(std::int64_t(chunks) * thread / threads);
@@ -39,13 +49,20 @@ class Team {
  private:
   using Function = void (*)(void*, int, int);
   template <class Fn>
-  void run(int chunks, Fn& fn, bool own) {
+  static auto range_of(std::size_t n, int size, Fn& fn) {
+    return [n, size, &fn](int chunk, int) {
+      fn(chunk, chunk * size, int(std::min(n, std::size_t(chunk + 1) * std::size_t(size))));
+    };
+  }
+  template <class Fn>
+  void run(int chunks, Fn&& fn, bool own) {
     if (size_ == 1 || chunks <= 1) {
       for (int i = 0; i < chunks; ++i) fn(i, 0);
       return;
     }
+    using Body = std::remove_reference_t<Fn>;
     struct Call {
-      static void run(void* f, int chunk, int thread) { (*static_cast<Fn*>(f))(chunk, thread); }
+      static void run(void* f, int chunk, int thread) { (*static_cast<Body*>(f))(chunk, thread); }
     };
     start(chunks, &Call::run, const_cast<void*>(static_cast<const void*>(&fn)), own);
   }

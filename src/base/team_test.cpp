@@ -96,3 +96,15 @@ TEST_CASE("team: loops of own chunks") {
     for (int c = 0; c < chunks; ++c) REQUIRE(by[std::size_t(c)] == (c < half ? 0 : 1));
   }
 }
+
+// Every index once, within its chunk.
+TEST_CASE("team: ranges") {
+  Team team(3);
+  std::vector<int> seen(75, 0);
+  team.for_ranges(seen.size(), 10, [&](int chunk, int first, int last) {
+    for (int i = first; i < last; ++i) seen[std::size_t(i)] += i / 10 == chunk;
+  });
+  for (const int n : seen) CHECK(n == 1);
+  CHECK(Team::ranges(75, 10) == 8);
+  CHECK(Team::ranges(0, 10) == 0);
+}

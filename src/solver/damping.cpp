@@ -70,10 +70,10 @@ void MassDamping::apply(State& state, RigidBodies& bodies, Team& team) {
     const Curve& c = model_.curves[d.mass_curve];
     part_rate.push_back((d.mass_scale != 0 ? d.mass_scale : 1) * curve_value(c.x, c.y, state.time));
   }
-  const int n = int(state.nodes.size()), chunks = (n + chunk_nodes - 1) / chunk_nodes;
+  const std::size_t n = state.nodes.size();
   const double dt = state.mean_dt();
-  partial_.assign(chunks, 0);
-  team.for_each_own(chunks, [&](int c, int) {
+  partial_.assign(Team::ranges(n, chunk_nodes), 0);
+  team.for_ranges(n, chunk_nodes, [&](int chunk, int first, int end) {
     double work = 0;
     // v holds v- + dt f/m: damps it and returns twice the mean work rate with the last force
     auto damp = [&](Vec3d& v, const Vec3d& f, double mass, double extra, const double* d,
@@ -90,7 +90,7 @@ void MassDamping::apply(State& state, RigidBodies& bodies, Team& team) {
       last = force;
       return power;
     };
-    for (int i = c * chunk_nodes; i < std::min(n, (c + 1) * chunk_nodes); ++i) {
+    for (int i = first; i < end; ++i) {
       if (state.owner[i] != NodeOwner::free) continue;
       double extra = 0;
       for (std::size_t p = 0; p < parts_.size(); ++p) extra += part_rate[p] * parts_[p].weight[i];
@@ -100,7 +100,7 @@ void MassDamping::apply(State& state, RigidBodies& bodies, Team& team) {
         work += damp(state.spins[i].w, state.moment[i], state.spins[i].inertia, extra, rate + 3,
                      last_moment_[i]);
     }
-    partial_[c] = work;
+    partial_[chunk] = work;
   });
   double work = 0;
   for (double w : partial_) work += w;

@@ -148,22 +148,22 @@ void Loads::forces(State& state, RigidBodies& bodies) {
 }
 
 void Loads::body_forces(State& state, RigidBodies& bodies, Team& team) {
-  const int n = int(state.nodes.size()), chunks = (n + chunk_nodes - 1) / chunk_nodes;
+  const std::size_t n = state.nodes.size();
   for (std::size_t i = 0; i < gravity_.size(); ++i) {
     Gravity& g = gravity_[i];
     const BodyLoad& load = model_.body_loads[i];
     const double a = -value(load.curve, load.scale, state.time);
     if (a == 0 && g.last == 0) continue;
-    partial_.assign(chunks, 0);
-    team.for_each_own(chunks, [&](int c, int) {
+    partial_.assign(Team::ranges(n, chunk_nodes), 0);
+    team.for_ranges(n, chunk_nodes, [&](int chunk, int first, int last) {
       double power = 0;
-      for (int k = c * chunk_nodes; k < std::min(n, (c + 1) * chunk_nodes); ++k) {
+      for (int k = first; k < last; ++k) {
         if (state.owner[k] == NodeOwner::rigid || (!g.on_node.empty() && !g.on_node[k])) continue;
         const double m = state.physical_mass[k];
         state.force[k] += (m * a) * load.direction;
         power += m * dot(load.direction, state.nodes[k].v);
       }
-      partial_[c] = power;
+      partial_[chunk] = power;
     });
     double power = 0;
     for (double p : partial_) power += p;

@@ -125,13 +125,12 @@ void RigidWalls::weld(Wall& wall, const WallGeometry& g, const State& state, int
 }
 
 double RigidWalls::highest_speed(const State& state, Team& team) {
-  const int n = int(state.nodes.size()), chunks = chunk_count(n);
-  std::vector<double> highest(chunks, 0);
-  team.for_each_own(chunks, [&](int c, int) {
+  const std::size_t n = state.nodes.size();
+  std::vector<double> highest(Team::ranges(n, chunk_nodes), 0);
+  team.for_ranges(n, chunk_nodes, [&](int chunk, int first, int last) {
     double h = 0;
-    for (int i = c * chunk_nodes; i < std::min(n, (c + 1) * chunk_nodes); ++i)
-      h = std::max(h, dot(state.nodes[i].v, state.nodes[i].v));
-    highest[c] = h;
+    for (int i = first; i < last; ++i) h = std::max(h, dot(state.nodes[i].v, state.nodes[i].v));
+    highest[chunk] = h;
   });
   double h = 0;
   for (double x : highest) h = std::max(h, x);

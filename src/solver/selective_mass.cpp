@@ -11,16 +11,6 @@ constexpr int chunk_nodes = 512;
 constexpr double tolerance = 1e-6;  // of the residual against the force, both over the diagonal
 constexpr int most_iterations = 200;
 
-int chunks_of(std::size_t n) { return int((n + chunk_nodes - 1) / chunk_nodes); }
-
-// calls fn(chunk, first, last) for fixed chunks of 0..n
-template <class Fn>
-void for_chunks(Team& team, std::size_t n, Fn fn) {
-  team.for_each_own(chunks_of(n), [&](int c, int) {
-    fn(c, c * chunk_nodes, std::min(int(n), (c + 1) * chunk_nodes));
-  });
-}
-
 }  // namespace
 
 int SelectiveMass::add(const int* node, const double* mass, int N, double scale) {
@@ -79,7 +69,7 @@ void SelectiveMass::index_nodes() {
         old_a[i];
   mass_.resize(n), diagonal_.resize(n), known_of_.assign(n, -1);
   mean_.resize(elements_.size());
-  partial_.resize(chunks_of(n));
+  partial_.resize(Team::ranges(n, chunk_nodes));
   indexed_ = true;
 }
 
@@ -117,7 +107,7 @@ void SelectiveMass::hold(int first, int last, std::vector<Vec3d>& x) const {
 
 // s times the mass-weighted mean of each element
 void SelectiveMass::element_means(const std::vector<Vec3d>& x, Team& team) {
-  for_chunks(team, elements_.size(), [&](int, int first, int last) {
+  team.for_ranges(elements_.size(), chunk_nodes, [&](int, int first, int last) {
     for (int i = first; i < last; ++i) {
       const Element& e = elements_[i];
       Vec3d sum{0, 0, 0};
@@ -147,7 +137,7 @@ double SelectiveMass::sum_of_chunks() const {
 // accelerations, measure like it
 double SelectiveMass::start(const State& state, Team& team, double& reference) {
   const std::size_t n = node_.size();
-  for_chunks(team, n, [&](int, int first, int last) {
+  team.for_ranges(n, chunk_nodes, [&](int, int first, int last) {
     hold(first, last, a_);
     for (int i = first; i < last; ++i) {
       mass_[i] = diagonal_[i] = state.nodes[node_[i]].mass;
@@ -165,7 +155,7 @@ double SelectiveMass::start(const State& state, Team& team, double& reference) {
   for (const Known& k : known_)
     for (int j = 0; j < k.count; ++j) driven += diagonal_[k.local] * k.value[j] * k.value[j];
   element_means(a_, team);
-  for_chunks(team, n, [&](int c, int first, int last) {
+  team.for_ranges(n, chunk_nodes, [&](int c, int first, int last) {
     for (int i = first; i < last; ++i) product_[i] = state.force[node_[i]];
     hold(first, last, product_);
     double sum = 0;
@@ -176,7 +166,7 @@ double SelectiveMass::start(const State& state, Team& team, double& reference) {
     partial_[c] = sum;
   });
   reference = sum_of_chunks() + driven;
-  for_chunks(team, n, [&](int c, int first, int last) {
+  team.for_ranges(n, chunk_nodes, [&](int c, int first, int last) {
     hold(first, last, residual_);
     double sum = 0;
     for (int i = first; i < last; ++i) {
@@ -192,7 +182,7 @@ double SelectiveMass::start(const State& state, Team& team, double& reference) {
 double SelectiveMass::iterate(double rho, Team& team) {
   const std::size_t n = node_.size();
   element_means(search_, team);
-  for_chunks(team, n, [&](int c, int first, int last) {
+  team.for_ranges(n, chunk_nodes, [&](int c, int first, int last) {
     for (int i = first; i < last; ++i) product_[i] = mass_[i] * search_[i] + scaled(i, search_);
     hold(first, last, product_);
     double sum = 0;
@@ -200,7 +190,7 @@ double SelectiveMass::iterate(double rho, Team& team) {
     partial_[c] = sum;
   });
   const double along = rho / sum_of_chunks();
-  for_chunks(team, n, [&](int c, int first, int last) {
+  team.for_ranges(n, chunk_nodes, [&](int c, int first, int last) {
     double sum = 0;
     for (int i = first; i < last; ++i) {
       a_[i] += along * search_[i];
@@ -210,7 +200,7 @@ double SelectiveMass::iterate(double rho, Team& team) {
     partial_[c] = sum;
   });
   const double after = sum_of_chunks(), turn = after / rho;
-  for_chunks(team, n, [&](int, int first, int last) {
+  team.for_ranges(n, chunk_nodes, [&](int, int first, int last) {
     for (int i = first; i < last; ++i)
       search_[i] = (1 / diagonal_[i]) * residual_[i] + turn * search_[i];
   });
@@ -231,7 +221,7 @@ void SelectiveMass::correct(State& state, const NodeConstraints& constraints, Te
   iterations_ += count, ++solves_;
   if (rho > enough) ++unconverged_;
   element_means(a_, team);
-  for_chunks(team, node_.size(), [&](int, int first, int last) {
+  team.for_ranges(node_.size(), chunk_nodes, [&](int, int first, int last) {
     for (int i = first; i < last; ++i) state.force[node_[i]] -= scaled(i, a_);
   });
 }

@@ -8,15 +8,7 @@
 namespace fabrica {
 namespace {
 
-constexpr int chunk_size = 1024;  // nodes per chunk of work
-int chunks_of(int n) { return (n + chunk_size - 1) / chunk_size; }
-
-// calls fn(first, last) for fixed chunks of 0..n
-template <class Fn>
-void for_chunks(Team& team, int n, Fn fn) {
-  team.for_each_own(chunks_of(n),
-                    [&](int c, int) { fn(c * chunk_size, std::min(n, (c + 1) * chunk_size)); });
-}
+constexpr int chunk_nodes = 1024;
 
 // What scales the fixed-point sums: the force that moves a node by a mean element length in one
 // step, of the median mass. A sum resolves 2^-40 and holds 2^23 of it; where the heaviest node is
@@ -238,7 +230,7 @@ void Simulation::external_forces() {
 // sums element partials in tile order and the fixed-point interaction forces
 void Simulation::assemble() {
   const bool rotations = !state_.spins.empty();
-  for_chunks(team_, model_.nodes.size(), [&](int a, int b) {
+  team_.for_ranges(state_.nodes.size(), chunk_nodes, [&](int, int a, int b) {
     tiles_.sum_partials(state_, a, b);
     state_.interaction.take_all(a, b, [&](std::size_t n, const Vec3d& f) { state_.force[n] += f; });
     if (rotations)
@@ -255,8 +247,8 @@ void Simulation::accelerate() {
   const double dt = state_.mean_dt();
   rigid_bodies_->gather(state_, team_);
   const bool bound = rigid_walls_->size() > 0;
-  chunk_speed_.assign(bound ? chunks_of(model_.nodes.size()) : 0, 0);
-  for_chunks(team_, model_.nodes.size(), [&](int a, int b) {
+  chunk_speed_.assign(bound ? Team::ranges(state_.nodes.size(), chunk_nodes) : 0, 0);
+  team_.for_ranges(state_.nodes.size(), chunk_nodes, [&](int chunk, int a, int b) {
     for (int n = a; n < b; ++n) {
       if (state_.owner[n] != NodeOwner::free) continue;
       NodeMotion& node = state_.nodes[n];
@@ -264,7 +256,7 @@ void Simulation::accelerate() {
       if (!state_.spins.empty() && state_.spins[n].inertia > 0)
         state_.spins[n].w += (dt / state_.spins[n].inertia) * state_.moment[n];
     }
-    if (bound) chunk_speed_[a / chunk_size] = fastest_unowned(a, b);
+    if (bound) chunk_speed_[chunk] = fastest_unowned(a, b);
   });
   if (damping_->active()) damping_->apply(state_, *rigid_bodies_, team_);
   node_constraints_->apply(state_);
@@ -292,7 +284,7 @@ double Simulation::speed_bound() const {
 
 void Simulation::advance_nodes() {
   const double dt = state_.dt;
-  for_chunks(team_, model_.nodes.size(), [&](int a, int b) {
+  team_.for_ranges(state_.nodes.size(), chunk_nodes, [&](int, int a, int b) {
     for (int n = a; n < b; ++n)
       if (state_.owner[n] == NodeOwner::free) state_.nodes[n].x += dt * state_.nodes[n].v;
   });
