@@ -3,7 +3,10 @@
 
 FOLDER holds the full tables (index.csv, *_stack.csv, *_loft.csv, skull_vault_sh.csv, cortical_thickness.csv, ...).
 Shipped is the thinned form: contours keep at most 6 harmonics, slices and stations are taken 1.6 spacings apart
-(the nearest ones that exist, first and last always), so that no surface can be recovered finer than 0.5-0.75 mm.
+(the nearest ones that exist, first and last always). Vertebrae change within a slice at their endplates and at the roots of
+arch and processes: of them so many slices are kept, where the outline changes most, that no slice left out is off by more
+than 0.5 mm in the mean (slice_choice.py). So no surface can be recovered finer than 0.5-0.75 mm. Printed is, for each
+stack, how many slices stay and the largest error of those left out; numpy is needed for that.
 Only what the mesh makers read is written. The result depends on the input alone.
 
 Ribs of data/anatomy/rib_arches.csv get the arch of the mean man: with h the height of the centre-line over the line of its
@@ -19,8 +22,13 @@ import pathlib
 import re
 import sys
 
+import slice_choice
+
 HARMONICS = 6
 SPACING = 1.6
+# stacks whose slices are chosen by what they change, and the largest error of a slice left out [mm]
+CHOSEN = re.compile(r"[CTL]\d+")
+BOUND = 0.5
 VAULT_DEGREE = 10  # a smooth fit; a lower degree leaves waves of 1.5 mm on the crown
 # the slices of the skull are 4.9 mm apart: its table is already coarser (0.7 mm) than the thinned form of the others
 WHOLE = {"skull"}
@@ -60,11 +68,35 @@ def vector(text, name):
     return [number(v) for v in re.search(name + r"=\(([^)]*)\)", text)[1].split()]
 
 
+def stack_of(rows, heights):
+    """the stack of contours as they would be shipped, all slices of it"""
+    def part(row, name):
+        return float(row.get(name, 0))
+
+    slices = {height: [] for height in heights}
+    for row in rows:
+        coefficients = {k: complex(part(row, f"re{k}"), part(row, f"im{k}")) for k in range(-HARMONICS, HARMONICS + 1)}
+        slices[part(row, "s_mm")].append(slice_choice.outline(coefficients))
+    return slice_choice.Stack(list(slices.items()))
+
+
+def slices_kept(bone, rows, heights):
+    """indices of the slices that stay"""
+    if bone in WHOLE:
+        return range(len(heights))
+    stack, even = stack_of(rows, heights), kept(len(heights))
+    keep = stack.choice(BOUND) if CHOSEN.fullmatch(bone) else even
+    line = f"{bone}: {len(keep)} of {len(heights)} slices, largest error of the others {stack.largest(keep)[0]:.2f} mm"
+    if keep is not even:
+        line += f" (1.6 spacings apart: {len(even)} slices, {stack.largest(even)[0]:.2f} mm)"
+    print(line)
+    return keep
+
+
 def thin_stack(source, target):
     comments, rows = read(source)
     heights = sorted({float(row["s_mm"]) for row in rows})
-    whole = source.name.removesuffix("_stack.csv") in WHOLE
-    keep = set(heights) if whole else {heights[i] for i in kept(len(heights))}
+    keep = {heights[i] for i in slices_kept(source.name.removesuffix("_stack.csv"), rows, heights)}
     orders = range(-HARMONICS, HARMONICS + 1)
     columns = ["height", "sign"] + [f"{part}{k}" for k in orders for part in ("re", "im")]
     out = [[number(row["s_mm"]), int(row["sign"])] + [number(row[f"{part}{k}"]) for k in orders for part in ("re", "im")]

@@ -114,7 +114,7 @@ TEST_CASE("the list of joints is read as it was written, and a bad line is named
 }
 
 // Table of discs: area measured, height of the literature. The outline may be drawn in by 5 % of
-// the radius; endplates rise by at most 2.5 mm, which the disc L4-L5 of 13.8 mm does not reach.
+// the radius; endplates rise by at most 3.5 mm, half of what L3-L4 lacks (12.5 mm, measured 5.6).
 TEST_CASE("discs have the area and the height of their table") {
   BodyOptions options;
   options.only = {"C6", "C7", "T6", "T7", "T11", "T12", "L3", "L4", "L5"};
@@ -125,7 +125,7 @@ TEST_CASE("discs have the area and the height of their table") {
     CHECK(disc.area > 0.88 * disc.table_area);
     CHECK(disc.area < 1.02 * disc.table_area);
     CHECK(disc.height < 1.05 * disc.wanted);
-    CHECK(disc.height > (disc.name == "L4_L5" ? 0.8 : 0.9) * disc.wanted);
+    CHECK(disc.height > 0.9 * disc.wanted);
   }
 }
 

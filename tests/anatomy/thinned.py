@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Makes the thinned bone tables again from the full ones and compares: thinned.py FULL_TABLES. Exit 77 (skipped) where
-the full tables are not at hand."""
+the full tables or numpy are not at hand."""
 import filecmp
+import importlib.util
 import pathlib
 import subprocess
 import sys
@@ -11,6 +12,9 @@ root = pathlib.Path(__file__).resolve().parents[2]
 full = pathlib.Path(sys.argv[1])
 if not full.is_dir():
     print(f"{full} is not here: skipped")
+    sys.exit(77)
+if not importlib.util.find_spec("numpy"):
+    print("numpy is not here: skipped")
     sys.exit(77)
 shipped = root / "data" / "anatomy" / "bones"
 with tempfile.TemporaryDirectory() as folder:

@@ -26,7 +26,7 @@ struct DiscReport {
   int bricks = 0;
 };
 
-// Lowers and raises the endplates towards the disc heights that literature gives, at most 2.5 mm
+// Lowers and raises the endplates towards the disc heights that literature gives, at most 3.5 mm
 // each: bodies behind are untouched. In frame C* to L*; changes nodes and mesh.nodes. Gives the
 // largest shift [mm].
 double fit_endplates(std::vector<PlacedBone>& bones);

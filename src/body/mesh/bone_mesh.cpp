@@ -28,7 +28,7 @@ double shell_wish(const std::string& bone, Resolution resolution) {
 }
 
 CellOptions cell_options(const BoneRecipe& recipe, double h) {
-  return {recipe.name, h, recipe.growth, recipe.euler, recipe.symmetric};
+  return {recipe.name, h, recipe.growth, recipe.euler, recipe.symmetric, recipe.open_euler};
 }
 
 // The cortex as a layer of bricks of the thickness that the table gives, at least `least` mm.
@@ -155,7 +155,9 @@ Made make(const std::string& name, Resolution resolution) {
   if (recipe.maker == "skull") clear_where_solid(made.mesh);
   made.report = measure(made.mesh);
   made.report.maker = solid ? "overlay with solid cortex" : recipe.maker;
-  made.report.expected_euler = recipe.euler.value_or(made.report.euler);
+  made.report.expected_euler = made.report.euler == recipe.open_euler
+                                   ? made.report.euler
+                                   : recipe.euler.value_or(made.report.euler);
   made.report.table_volume = shape.table_volume;
   const SurfaceError error = surface_error(made.mesh, shape.field);
   made.report.error_mean = error.mean;

@@ -21,24 +21,7 @@ constexpr double most_offset = 1.0;  // [mm] of a surface to hold its table's vo
 std::string path_of(const std::string& file) { return "anatomy/bones/" + file + ".csv"; }
 
 std::vector<Slice> read_slices(const std::string& bone) {
-  const Table table(path_of(bone + "_stack"));
-  std::vector<Slice> slices;
-  for (int row = 0; row < table.rows(); ++row) {
-    const double height = table.number(row, "height");
-    if (slices.empty() || height != slices.back().height) slices.push_back({height, {}});
-    std::vector<std::array<double, 2>> loop(contour_points, {0, 0});
-    for (int k = -contour_harmonics; k <= contour_harmonics; ++k) {
-      const double re = table.number(row, fmt::format("re{}", k)),
-                   im = table.number(row, fmt::format("im{}", k));
-      for (int m = 0; m < contour_points; ++m) {
-        const double t = 2 * pi * k * m / contour_points, c = cos(t), s = sin(t);
-        loop[m][0] += re * c - im * s;
-        loop[m][1] += re * s + im * c;
-      }
-    }
-    slices.back().loops.push_back(std::move(loop));
-  }
-  return slices;
+  return slices_of(Table(path_of(bone + "_stack")), "height", contour_harmonics);
 }
 
 Point point(const Table& table, int row, const char* prefix) {
@@ -155,6 +138,26 @@ int letters_apart(const std::string& a, const std::string& b) {  // Levenshtein
 
 }  // namespace
 
+std::vector<Slice> slices_of(const Table& table, const std::string& height_column, int harmonics) {
+  std::vector<Slice> slices;
+  for (int row = 0; row < table.rows(); ++row) {
+    const double height = table.number(row, height_column);
+    if (slices.empty() || height != slices.back().height) slices.push_back({height, {}});
+    std::vector<std::array<double, 2>> loop(contour_points, {0, 0});
+    for (int k = -harmonics; k <= harmonics; ++k) {
+      const double re = table.number(row, fmt::format("re{}", k)),
+                   im = table.number(row, fmt::format("im{}", k));
+      for (int m = 0; m < contour_points; ++m) {
+        const double t = 2 * pi * k * m / contour_points, c = cos(t), s = sin(t);
+        loop[m][0] += re * c - im * s;
+        loop[m][1] += re * s + im * c;
+      }
+    }
+    slices.back().loops.push_back(std::move(loop));
+  }
+  return slices;
+}
+
 const std::vector<BoneRecipe>& bone_recipes() {
   static const std::vector<BoneRecipe> recipes = [] {
     const Table table(path_of("meshing"));
@@ -178,7 +181,10 @@ const std::vector<BoneRecipe>& bone_recipes() {
             table.fail(row, fmt::format("the core '{}' should be like 2 or 2+", core));
         }
       r.symmetric = table.text(row, "symmetric") == "yes";
+      r.exact_distances = table.text(row, "distances") == "exact";
       if (!table.text(row, "euler").empty()) r.euler = int(table.number(row, "euler"));
+      if (!table.text(row, "open_euler").empty())
+        r.open_euler = int(table.number(row, "open_euler"));
       list.push_back(r);
     }
     return list;
@@ -218,7 +224,8 @@ BoneShape bone_shape(const std::string& name, double grid, double margin) {
                   index.volume,
                   {},
                   {}};
-  if (bone_recipe(name).symmetric) shape.field = shape.field.symmetric();
+  if (const BoneRecipe& recipe = bone_recipe(name); recipe.symmetric)
+    shape.field = shape.field.symmetric(recipe.exact_distances);
   if (index.volume > 0)
     shape.field.match_volume(index.volume, most_offset);
   else

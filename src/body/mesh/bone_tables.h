@@ -7,6 +7,7 @@
 
 #include "body/mesh/distance_field.h"
 #include "body/mesh/loft.h"
+#include "body/tables.h"
 
 namespace fabrica::body {
 
@@ -18,12 +19,18 @@ struct BoneRecipe {
   double growth = 0;             // of the field before cells are chosen, in edges
   double solid_cortex =
       0;  // [mm] least thickness of the cortex as bricks, from standard on; 0: shells
-  std::array<int, 3> core{};   // bricks along the side of a loft's core, by resolution
-  std::array<bool, 3> ring{};  // is there a ring around the core?
-  std::optional<int> euler;    // of the boundary
-  bool symmetric = false;      // a bone of the midline: made its own mirror image
+  std::array<int, 3> core{};      // bricks along the side of a loft's core, by resolution
+  std::array<bool, 3> ring{};     // is there a ring around the core?
+  std::optional<int> euler;       // of the boundary
+  std::optional<int> open_euler;  // of the boundary with the foramina open that most grids close
+  bool symmetric = false;         // a bone of the midline: made its own mirror image
+  bool exact_distances = false;   // the field of that is made a distance again
   double spacing(Resolution r) const { return edge[std::size_t(r)]; }
 };
+
+// contours of a table of parallel slices in rising height; the column of their heights and up to
+// which harmonic there are coefficients
+std::vector<Slice> slices_of(const Table& table, const std::string& height_column, int harmonics);
 
 const std::vector<BoneRecipe>& bone_recipes();
 // throws BodyError with the nearest known name

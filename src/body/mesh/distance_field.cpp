@@ -73,6 +73,85 @@ std::optional<std::pair<float, int>> crossing_of(const Point& foot, const Point&
   return std::pair{float(a.z + wb * (b.z - a.z) + wc * (c.z - a.z)), twice_area > 0 ? -1 : 1};
 }
 
+constexpr int band = 8;  // spacings from the surface in which distances are measured anew
+
+// d of |grad d| = 1 from the nearer neighbour along each axis of a grid of spacing h (Zhao, Math.
+// Comp. 74, 2005)
+float distance_beside(float x, float y, float z, float h) {
+  const float least = std::min({x, y, z}), most = std::max({x, y, z});
+  const float b = std::max(std::min(x, y), std::min(std::max(x, y), z)) - least, c = most - least;
+  if (b >= h) return least + h;
+  const float two = 0.5f * (b + std::sqrt(2 * h * h - b * b));
+  if (two <= c) return least + two;
+  return least +
+         (b + c + std::sqrt(std::max(0.0f, (b + c) * (b + c) - 3 * (b * b + c * c - h * h)))) / 3;
+}
+
+// Distances to a level of the values phi on a grid, at most `reach` [mm].
+struct Distances {
+  std::array<int, 3> count;
+  float spacing, reach;
+  std::vector<float> value = {};
+  std::vector<char> beside = {};  // a line through the point meets the level before the next point
+
+  std::size_t place(int i, int j, int k) const {
+    return (std::size_t(k) * count[1] + j) * count[0] + i;
+  }
+
+  // A plane that meets the lines through a point at s_x, s_y, s_z is
+  // (1/s_x^2 + 1/s_y^2 + 1/s_z^2)^(-1/2) away.
+  void find_beside(const std::vector<float>& phi, double level) {
+    const std::size_t stride[3] = {1, std::size_t(count[0]), std::size_t(count[0]) * count[1]};
+    value.assign(phi.size(), reach), beside.assign(phi.size(), 0);
+    for (int k = 0; k < count[2]; ++k)
+      for (int j = 0; j < count[1]; ++j)
+        for (int i = 0; i < count[0]; ++i) {
+          const int index[3] = {i, j, k};
+          const std::size_t n = place(i, j, k);
+          const double here = phi[n] - level;
+          double sum = 0;  // infinite where the point lies on the level
+          for (int a = 0; a < 3; ++a) {
+            double share = 2;  // of a spacing up to the level
+            const auto look = [&](std::size_t other) {
+              const double there = phi[other] - level;
+              if ((here < 0) != (there < 0)) share = std::min(share, here / (here - there));
+            };
+            if (index[a] > 0) look(n - stride[a]);
+            if (index[a] < count[a] - 1) look(n + stride[a]);
+            if (share <= 1) sum += 1 / (share * share);
+          }
+          if (sum == 0) continue;
+          beside[n] = 1, value[n] = float(spacing / std::sqrt(sum));
+        }
+  }
+
+  // once through all points, along each axis upwards or downwards
+  void sweep(bool x_down, bool y_down, bool z_down) {
+    const int nx = count[0];
+    std::vector<float> beyond(nx, reach), y(nx), z(nx);
+    const auto row = [&](int j, int k) {
+      const bool inside = j >= 0 && k >= 0 && j < count[1] && k < count[2];
+      return inside ? &value[place(0, j, k)] : beyond.data();
+    };
+    for (int a = 0; a < count[2]; ++a)
+      for (int b = 0; b < count[1]; ++b) {
+        const int k = z_down ? count[2] - 1 - a : a, j = y_down ? count[1] - 1 - b : b;
+        const float *y0 = row(j - 1, k), *y1 = row(j + 1, k), *z0 = row(j, k - 1),
+                    *z1 = row(j, k + 1);
+        for (int i = 0; i < nx; ++i) y[i] = std::min(y0[i], y1[i]), z[i] = std::min(z0[i], z1[i]);
+        float* d = row(j, k);
+        const char* fixed = &beside[place(0, j, k)];
+        for (int c = 0; c < nx; ++c) {
+          const int i = x_down ? nx - 1 - c : c;
+          const float x = std::min(i > 0 ? d[i - 1] : reach, i < nx - 1 ? d[i + 1] : reach);
+          // a result is at least the nearest neighbour's and spacing / sqrt(3)
+          if (fixed[i] || std::min({x, y[i], z[i]}) + 0.57f * spacing >= d[i]) continue;
+          d[i] = std::min(d[i], distance_beside(x, y[i], z[i], spacing));
+        }
+      }
+  }
+};
+
 }  // namespace
 
 Point closest_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c) {
@@ -167,6 +246,15 @@ void DistanceField::divide_by_gradient() {
   phi_.swap(out);
 }
 
+void DistanceField::measure_distance() {
+  Distances distance{count_, float(spacing_), float(band * spacing_)};
+  distance.find_beside(phi_, offset);
+  // a distance grows along straight lines: each lies in one of eight directions
+  for (int way = 0; way < 8; ++way) distance.sweep(way & 1, way & 2, way & 4);
+  for (std::size_t n = 0; n < phi_.size(); ++n)
+    phi_[n] = float(offset + (phi_[n] < offset ? -distance.value[n] : distance.value[n]));
+}
+
 DistanceField DistanceField::of_triangles(const TriangleSurface& surface, double spacing,
                                           double margin) {
   Box box{surface.nodes[0], surface.nodes[0]};
@@ -226,7 +314,7 @@ double DistanceField::value(const Point& p) const {
   return value(p, gradient);
 }
 
-DistanceField DistanceField::symmetric() const {
+DistanceField DistanceField::symmetric(bool exact) const {
   // centre of the volume, half a cell where the surface passes through
   double moment = 0, sum = 0;
   for (int k = 0; k < count_[2]; ++k)
@@ -236,6 +324,8 @@ DistanceField DistanceField::symmetric() const {
         sum += inside, moment += inside * (origin_.y + j * spacing_);
       }
   const double middle = sum > 0 ? moment / sum : 0;
+  DistanceField measured = *this;
+  if (exact) measured.measure_distance();
   DistanceField field = *this;
   const double low = origin_.y, high = low + (count_[1] - 1) * spacing_;
   const int half = int(std::ceil(std::max(std::abs(low), std::abs(high)) / spacing_));
@@ -243,11 +333,11 @@ DistanceField DistanceField::symmetric() const {
   field.count_[1] = 2 * half + 1;
   field.phi_.assign(std::size_t(count_[0]) * field.count_[1] * count_[2], 0.0f);
   field.fill([&](const Point& q) {
-    return 0.5 * (value(axes_.to_bone({q.x, middle + q.y, q.z})) +
-                  value(axes_.to_bone({q.x, middle - q.y, q.z}))) +
+    return 0.5 * (measured.value(axes_.to_bone({q.x, middle + q.y, q.z})) +
+                  measured.value(axes_.to_bone({q.x, middle - q.y, q.z}))) +
            offset;
   });
-  field.divide_by_gradient();
+  exact ? field.measure_distance() : field.divide_by_gradient();
   return field;
 }
 

@@ -57,9 +57,15 @@ class DistanceField {
   // distance.
   void divide_by_gradient();
 
+  // Makes each value the distance to the surface, which stays where it is: exact beside a plane,
+  // elsewhere to first order in the spacing, and no more than 8 spacings. Along slices that end
+  // flat, what is read between them has plateaus and ridges that hold nodes back.
+  void measure_distance();
+
   // The solid with the centre of its volume moved to y = 0, and halfway to its mirror image there:
-  // the mean of the two distances. The grid mirrors itself; its second axis must be y.
-  DistanceField symmetric() const;
+  // the mean of the two distances, which are measured anew before and after where they shall be
+  // exact. The grid mirrors itself; its second axis must be y.
+  DistanceField symmetric(bool exact = false) const;
 
   // signed distance less the outward offset, at a point of the bone frame
   double value(const Point& p) const;

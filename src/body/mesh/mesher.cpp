@@ -30,7 +30,8 @@ BoneMesh cells_of(const DistanceField& field, const CellOptions& options) {
   const Point shifts[] = {
       {0, 0, 0}, {0.25, 0.25, 0.25}, {0.5, 0, 0.25}, {0, 0.5, 0.5}, {0.5, 0.5, 0}};
   std::string found;
-  for (const double more : {0.0, 0.1, -0.1, 0.2, 0.3})
+  for (const double more : {0.0, 0.1, -0.1, 0.2, 0.3}) {
+    std::optional<BoneMesh> open;
     for (const Point& shift : shifts) {
       const double growth = std::max(0.0, options.growth + more) * options.spacing;
       CellGrid grid = rasterise(field, options.spacing, growth, shift, options.symmetric);
@@ -38,8 +39,11 @@ BoneMesh cells_of(const DistanceField& field, const CellOptions& options) {
       BoneMesh mesh = bricks_of(grid);
       const int euler = euler_number(mesh.surface);
       if (!mesh.bricks.empty() && euler == options.euler.value_or(euler)) return mesh;
+      if (!mesh.bricks.empty() && euler == options.open_euler && !open) open = std::move(mesh);
       found += fmt::format(" {}", euler);
     }
+    if (open) return *open;
+  }
   throw BodyError(
       fmt::format("{}: the boundary should have the Euler number {}; grids of {} mm gave{}",
                   options.name, options.euler.value_or(0), options.spacing, found));

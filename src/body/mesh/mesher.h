@@ -10,15 +10,17 @@
 namespace fabrica::body {
 
 struct CellOptions {
-  std::string name;          // in messages
-  double spacing = 4;        // [mm] of the grid
-  double growth = 0;         // of the field before cells are chosen, in spacings
-  std::optional<int> euler;  // that the boundary must have
-  bool symmetric = false;    // the field mirrors itself, and so shall the cells
+  std::string name;               // in messages
+  double spacing = 4;             // [mm] of the grid
+  double growth = 0;              // of the field before cells are chosen, in spacings
+  std::optional<int> euler;       // that the boundary must have
+  bool symmetric = false;         // the field mirrors itself, and so shall the cells
+  std::optional<int> open_euler;  // or may have, where openings that most grids close are open
 };
 
 // The cells of a solid: the first grid placement and growth that give the boundary the Euler number
-// asked for. Throws BodyError with the numbers found when none does.
+// asked for; where none of a growth does, the first with its openings open. Throws BodyError with
+// the numbers found when none does.
 BoneMesh cells_of(const DistanceField& field, const CellOptions& options);
 
 // the problem of fitting a mesh to a field: its bricks and its surface nodes, targets still to be

@@ -133,6 +133,20 @@ TEST_CASE("a hole in a slice stays open") {
   CHECK(euler_number(cells_of(field, {"ring", 3, 0, 0}).surface) == 0);
 }
 
+// A plate of 30 x 30 x 12 mm with two holes of radius 4 mm: Euler 2 - 2 x 2, which no grid of 3 mm
+// gives as 2.
+TEST_CASE("openings that the grid leaves open are taken where they are allowed") {
+  const Box box{{-15, -15, -6}, {15, 15, 6}};
+  const DistanceField field = DistanceField::of_function(box, 0.8, 6, [](const Point& q) {
+    const double plate = std::max({std::abs(q.x) - 15, std::abs(q.y) - 15, std::abs(q.z) - 6});
+    const double hole = 4 - std::hypot(std::abs(q.x) - 8, q.y);
+    return std::max(plate, hole);
+  });
+  CHECK_THROWS_AS(cells_of(field, {"plate", 3, 0, 2}), BodyError);
+  CHECK(euler_number(cells_of(field, {"plate", 3, 0, 2, false, -2}).surface) == -2);
+  CHECK(euler_number(cells_of(field, {"plate", 3, 0, -2, false, 2}).surface) == -2);
+}
+
 namespace {
 
 // of a straight round loft of radius 7 and length 60
