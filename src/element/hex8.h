@@ -5,12 +5,13 @@
 // Gradient of the shape functions, two variants:
 //   centre (Exact = false): J_ij = 1/8 sum_A xi_Ai x_Aj,  grad N_A = J^-1 xi_A / 8,  V = 8 det J
 //   exact  (Exact = true):  grad N_A = (1/V) dV/dx_A, which passes the patch test on warped bricks
-// Force on node A:  f_iA = -V sigma_ij dN_A/dx_j - sum_a Q_ia gamma_aA (1) Hourglass: gamma_aA =
-// Gamma_aA - (Gamma_a . x_j) dN_A/dx_j,   h_ia = gamma_aA v_iA              (2)
-//   viscous (IHQ 2, 3)   Q_ia = QM rho V^(2/3) c / 4  h_ia, bounded in distorted bricks; IHQ 1 with
-//   Gamma for gamma stiffness (IHQ 4, 5) Q_ia += dt QM/16 (lambda + 2G) V (grad N_A . grad N_A)
-//   h_ia, turned with the element assumed strain (6)   Belytschko-Bindeman, in a frame that turns
-//   with the element
+// Force on node A:  f_iA = -V sigma_ij dN_A/dx_j - sum_a Q_ia gamma_aA                       (1)
+// Hourglass:  gamma_aA = Gamma_aA - (Gamma_a . x_j) dN_A/dx_j,   h_ia = gamma_aA v_iA         (2)
+//   viscous (IHQ 2, 3)    Q_ia = QM rho V^(2/3) c / 4  h_ia; IHQ 1 with Gamma for gamma
+//   stiffness (IHQ 4, 5)  Q_ia += dt QM/16 (lambda + 2G) V (grad N_A . grad N_A) h_ia, turned with
+//                         the element
+//   both bounded in distorted bricks (hex_hourglass.h)
+//   assumed strain (6)    Belytschko-Bindeman, in a frame that turns with the element
 // Source: Flanagan and Belytschko, IJNME 17 (1981) 679; Belytschko and Bindeman, CMAME 105 (1993)
 // 225.
 #include "element/hex_geometry.h"

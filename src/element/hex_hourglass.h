@@ -4,6 +4,10 @@
 
 namespace fabrica {
 
+// Where a brick is warped or has hourglassed far, X_a = Gamma_a . x and the gradients at its centre
+// are large, and gamma with them: |gamma_a|^2 <= 8 + |X_a|^2 B,  B = sum_A |grad N_A|^2. What a
+// mode may ask of the step is bounded with that (IHQ 1-5).
+
 // Hourglass quantities of one pack. q[a] is the generalised force of mode a (three components).
 // IHQ 1, the viscous control of the oldest codes, takes Gamma for gamma: x is then zero. It resists
 // the rotation of a skewed brick a little, but asks no more of the step when the brick is
@@ -32,25 +36,35 @@ struct HexHourglass {
     modes(position, x);
     for (int a = 0; a < 4; ++a) h[a] = h[a] - gradient * x[a];
   }
+  // k, or where that is less what gives k |gamma_a|^2 the bound; squares: sum_A |grad N_A|^2
+  FABRICA_FN L bounded(int a, const L& k, const L& bound, const L& squares) const {
+    return min(k, bound / fma(dot(x[a], x[a]), squares, L(8.0)));
+  }
   FABRICA_FN void scale(const L& s) {
     for (int a = 0; a < 4; ++a) q[a] = s * q[a];
   }
 };
 
-// IHQ 4, 5: rate form, turned with the element's spin
+// IHQ 4, 5: rate form, turned with the element's spin. With the corner mass m the mode has
+// (omega dt)^2 = k |gamma|^2 dt^2 / m, beside up to 4 TSSFAC^2 of the uniform modes that the step
+// is chosen for; together they may have 4. In a warped flat brick at its own step QM = 2/3 would
+// add up to 10. Four modes of 0.5 keep below 4 at TSSFAC = 0.9; a cube at its own step has 0.49
+// from QM = 0.1.
 template <class L>
 FABRICA_FN void hexhourglass_stiffness(const ElementParameters& p, const Point<L>& point,
-                                       const L& dt, const HexGradient<L>& g,
+                                       const L& dt, const L& density, const HexGradient<L>& g,
                                        const Mat3<L>& gradient, StateView<L> s,
                                        HexHourglass<L>& hg) {
-  const L k = L(p.hourglass_coefficient / 16) * point.modulus * g.volume * g.squares() * dt;
+  const L squares = g.squares();
+  const L k = L(p.hourglass_coefficient / 16) * point.modulus * g.volume * squares * dt;
+  const L most = L(0.5 / 8) * density * g.volume / dt;
   const Vec3<L> w = {L(0.5) * dt * (gradient.a[2][1] - gradient.a[1][2]),
                      L(0.5) * dt * (gradient.a[0][2] - gradient.a[2][0]),
                      L(0.5) * dt * (gradient.a[1][0] - gradient.a[0][1])};
   for (int a = 0; a < 4; ++a) {
     Vec3<L> q = s.template get<Vec3<L>>(3 * a);
     q += cross(w, q + L(0.5) * cross(w, q));
-    q += k * hg.h[a];
+    q += hg.bounded(a, k, most, squares) * hg.h[a];
     s.put(3 * a, q);
     hg.q[a] = q;
   }
@@ -95,21 +109,19 @@ FABRICA_FN void hexhourglass_assumed_strain(const ElementParameters& p, const Po
   }
 }
 
-// IHQ 1-3. Where a brick has hourglassed far, X_a = Gamma_a . x and the gradients at its centre are
-// large, and gamma with them: |gamma_a|^2 <= 8 + |X_a|^2 B,  B = sum_A |grad N_A|^2. A damper k on
-// a velocity that is half a step old is stable up to k |gamma|^2 dt / m = 2 with the corner mass m;
-// a cube at its own step has 1.44 from QM = 0.1. Damping beyond 1.6 is cut to that, which a brick
-// reaches only when it is both distorted and the one that sets the step.
+// IHQ 1-3. A damper k on a velocity that is half a step old is stable up to k |gamma|^2 dt / m = 2
+// with the corner mass m; a cube at its own step has 1.44 from QM = 0.1. Damping beyond 1.6 is cut
+// to that, which a brick reaches only when it is both distorted and the one that sets the step.
 template <class L>
 FABRICA_FN L hexhourglass_viscous(const ElementParameters& p, const L& dt, const L& density,
                                   const L& sound, const L& length, const HexGradient<L>& g,
                                   HexHourglass<L>& hg) {
   const L k = L(p.hourglass_coefficient * Real(0.25)) * density * sound * length * length;
   const L most = L(1.6 / 8) * density * g.volume / dt;
-  const L b = g.squares();
+  const L squares = g.squares();
   L work = L(0.0);
   for (int a = 0; a < 4; ++a) {
-    hg.q[a] = min(k, most / fma(dot(hg.x[a], hg.x[a]), b, L(8.0))) * hg.h[a];
+    hg.q[a] = hg.bounded(a, k, most, squares) * hg.h[a];
     work += dot(hg.q[a], hg.h[a]);
   }
   return work;
@@ -130,7 +142,7 @@ FABRICA_FN void hexhourglass_forces(const ElementParameters& p, const Point<L>& 
       hexhourglass_assumed_strain(p, point, dt, c.x, s, hg);
       for (int a = 0; a < 4; ++a) work += dot(hg.q[a], hg.h[a]);
     } else {
-      hexhourglass_stiffness(p, point, dt, g, gradient, s, hg);
+      hexhourglass_stiffness(p, point, dt, density, g, gradient, s, hg);
       for (int a = 0; a < 4; ++a) work += L(0.5) * dot(point.alive * hg.q[a] + old[a], hg.h[a]);
     }
   } else {
