@@ -2,8 +2,10 @@
 // Membranes (ELFORM 5 and 9): plane stress in the surface, no bending, no transverse shear, no
 // rotations. ELFORM 5: one point with B1, B2 as in shell_bt.h and control of the in-plane hourglass
 // modes
-//   q_a = gamma.v_a,  Q_a += QM E h A BB/8 q_a dt  (IHQ >= 4),  Q_a = QM E h A BB/8 q_a sqrt(A)/c
-//     (viscous)  (1)
+//   q_a = gamma.v_a,  Q_a += QM E h A BB/8 q_a dt / 16  (IHQ >= 4; / 16: in amplitudes of the
+//   modes,
+//     as shell_bt.h), held at s h sqrt(A)/4 while the point flows at the stress s,
+//   Q_a = QM E h A BB/8 q_a sqrt(A)/c  (viscous) (1)
 // ELFORM 9: 2 x 2 points, Almansi strain at each.
 // Source: Belytschko, Lin, Tsay 1984 (membrane part); Flanagan and Belytschko 1981 (hourglass).
 #include "element/shell_bt.h"
@@ -23,8 +25,9 @@ struct MembranePoint {
   }
   // n: h s; only the membrane members of the result count
   template <class L>
-  FABRICA_FN static ShellResultants<L> advance(const M& law, const ShellStrain<L>& e, const L& h,
-                                               Point<L> point, StateView<L> s) {
+  FABRICA_FN static ShellResultants<L> advance(const M& law, const ElementParameters& p,
+                                               const ShellStrain<L>& e, const L& h, Point<L> point,
+                                               StateView<L> s) {
     using MaterialState = typename M::template State<L>;
     const L zero = L(0.0);
     ShellResultants<L> r{zero, zero, zero, zero,   zero,   zero,  zero,
@@ -39,6 +42,9 @@ struct MembranePoint {
       s.store(alive, r.alive);
       now = r.alive * now;
     }
+    KeptStress<L> share;
+    share.add(p, L(1.0), old, now, {e.xx, e.yy, zero, e.xy, zero, zero});
+    r.flow = share.flow();
     s.store(0, now.xx), s.store(1, now.yy), s.store(2, now.xy);
     s.put(material, state);
     const L normal = fma(old.xx + now.xx, e.xx, (old.yy + now.yy) * e.yy);
@@ -120,7 +126,7 @@ struct Membrane {
     const L root_area = sqrt(g.area);
     const Point<L> point{dt,         L(1.0), root_area, L(p.bulk + Real(4.0 / 3.0) * p.shear),
                          L(p.shear), L(1.0)};
-    ShellResultants<L> r = MembranePoint<M>::advance(material, e, h, point, point_view<L>(s));
+    ShellResultants<L> r = MembranePoint<M>::advance(material, p, e, h, point, point_view<L>(s));
     if (p.thickness_update) h *= L(1.0) + r.thinning;
     s.store(thickness_field, h);
     totals.time_step = quad_step(p, c.x, g.area, sqrt(r.stiffening));
@@ -136,12 +142,14 @@ struct Membrane {
                  (fma(g.x31, g.x31, g.y31 * g.y31) + fma(g.x42, g.x42, g.y42 * g.y42));
     const L stiffness = L(p.hourglass_coefficient * p.youngs / 8) * h * g.area * bb;
     const L viscous = root_area * L(1 / plate_speed(p));
+    const L elastic = L(ShellBT::stiffness_share) * stiffness * dt;
+    const L bound = L(0.25) * h * root_area * r.flow;
     L Q[2], energy = zero;
     for (int a = 0; a < 2; ++a) {
       const L rate = hv[a] - fma(g.hx, d.x[a], g.hy * d.y[a]);
       if (p.hourglass >= 4) {
         const L old = s.load(hourglass_field + a);
-        Q[a] = r.alive * fma(stiffness * dt, rate, old);
+        Q[a] = r.alive * clamp(fma(elastic, rate, old), -bound, bound);
         s.store(hourglass_field + a, Q[a]);
         energy = fma(L(0.5) * (old + Q[a]), rate, energy);
       } else {

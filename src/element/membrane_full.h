@@ -66,7 +66,8 @@ struct MembraneFull {
       d.wx = d.wy = zero;
       ShellStrain<L> e{};
       almansi(d, dt, e);
-      ShellResultants<L> r = MembranePoint<M>::advance(material, e, h, point, point_view<M>(s, k));
+      ShellResultants<L> r =
+          MembranePoint<M>::advance(material, p, e, h, point, point_view<M>(s, k));
       const L mid_area = at.D * (L(1.0) - L(0.5) * (e.xx + e.yy));
       totals.internal = fma(mid_area, r.work, totals.internal);
       if (p.stiffness_damping != 0)

@@ -29,7 +29,7 @@ Mesh<E, ElasticLaw> sheet() {
   m.law = {Real(e.density), Real(e.bulk), Real(e.shear)};
   m.moduli();
   gauss_layers(m.p, 1);
-  m.p.hourglass = 4, m.p.hourglass_coefficient = Real(0.05);
+  m.p.hourglass = 4, m.p.hourglass_coefficient = Real(0.8);
   return m;
 }
 template <class E>

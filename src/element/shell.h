@@ -98,6 +98,29 @@ struct ShellResultants {
   L flow;        // von Mises stress in the plane while the layers flow, else unbounded
 };
 
+// What a point kept of its elastic trial stress, for control of hourglass modes while layers flow:
+// von Mises stress squared in the plane, w times, of the new stress and of the trial stress.
+template <class L>
+struct KeptStress {
+  L kept = L(1e-30), trial = L(1e-30);
+  FABRICA_FN void add(const ElementParameters& p, const L& w, const Sym3<L>& old,
+                      const Sym3<L>& now, const Sym3<L>& strain) {
+    const L plane = L(p.youngs / (1 - p.poisson * p.poisson)), nu = L(p.poisson);
+    const L xx = fma(plane, fma(nu, strain.yy, strain.xx), old.xx),
+            yy = fma(plane, fma(nu, strain.xx, strain.yy), old.yy);
+    const L xy = fma(L(2 * p.shear), strain.xy, old.xy);
+    auto square = [](const L& a, const L& b, const L& c) {
+      return fma(a, a, fma(b, b, fma(L(3.0) * c, c, -(a * b))));
+    };
+    kept = fma(w, square(now.xx, now.yy, now.xy), kept);
+    trial = fma(w, square(xx, yy, xy), trial);
+  }
+  // ShellResultants::flow; rounding must not pass for flow
+  FABRICA_FN L flow() const {
+    return select(kept < L(0.9998) * trial, sqrt(kept), L(unbounded_stress));
+  }
+};
+
 // History of the layers of one in-plane point: per layer xx yy xy yz zx, [alive], material state.
 template <class M>
 struct ShellLayers {
@@ -137,7 +160,8 @@ struct ShellLayers {
     const L zero = L(0.0), half_h = L(0.5) * h;
     ShellResultants<L> r{zero, zero, zero, zero,   zero, zero,  zero,
                          zero, zero, zero, L(1.0), zero, L(1.0)};
-    L modulus = start.modulus, kept = L(1e-30), trial = L(1e-30);
+    L modulus = start.modulus;
+    KeptStress<L> share;
     for (int q = 0; q < p.layers; ++q, s.block += stride * block_size) {
       const L z = half_h * L(p.layer_z[q] - p.reference_location), w = L(p.layer_weight[q]);
       const Sym3<L> strain{
@@ -159,13 +183,12 @@ struct ShellLayers {
           s.store(4, now.zx);
       s.put(material, state);
       add(r, w, z, old, now, strain);
-      add_squares(p, w, old, now, strain, kept, trial);
+      share.add(p, w, old, now, strain);
       r.thinning = fma(w, dzz, r.thinning);
       modulus = max(modulus, point.modulus);
     }
     finish(r, h);
-    // rounding must not pass for flow
-    r.flow = select(kept < L(0.9998) * trial, sqrt(kept), L(unbounded_stress));
+    r.flow = share.flow();
     r.stiffening = modulus / start.modulus;
     if constexpr (!M::can_fail) r.alive = L(1.0);
     return r;
@@ -196,20 +219,6 @@ struct ShellLayers {
     const L twice = fma(old.xy + now.xy, strain.xy, across);
     const L normal = fma(old.xx + now.xx, strain.xx, (old.yy + now.yy) * strain.yy);
     r.work = fma(w, fma(L(2.0), twice, normal), r.work);
-  }
-  // von Mises stress squared, in the plane, of the new stress and of the elastic trial stress
-  template <class L>
-  FABRICA_FN static void add_squares(const ElementParameters& p, const L& w, const Sym3<L>& old,
-                                     const Sym3<L>& now, const Sym3<L>& strain, L& kept, L& trial) {
-    const L plane = L(p.youngs / (1 - p.poisson * p.poisson)), nu = L(p.poisson);
-    const L xx = fma(plane, fma(nu, strain.yy, strain.xx), old.xx),
-            yy = fma(plane, fma(nu, strain.xx, strain.yy), old.yy);
-    const L xy = fma(L(2 * p.shear), strain.xy, old.xy);
-    auto square = [](const L& a, const L& b, const L& c) {
-      return fma(a, a, fma(b, b, fma(L(3.0) * c, c, -(a * b))));
-    };
-    kept = fma(w, square(now.xx, now.yy, now.xy), kept);
-    trial = fma(w, square(xx, yy, xy), trial);
   }
   template <class L>
   FABRICA_FN static void finish(ShellResultants<L>& r, const L& h) {
