@@ -274,8 +274,7 @@ int run_command(const RunCommand& c) {
   RunOptions options;
   options.threads = c.threads > 0 ? c.threads : int(std::thread::hardware_concurrency());
   options.end_time = c.until;
-  const auto& methods = wall_method_names();
-  options.walls = WallMethod(std::find(methods.begin(), methods.end(), c.walls) - methods.begin());
+  options.walls = wall_method(c.walls);
   Simulation simulation(*model, options, diagnostics);
   for (std::size_t i = printed; i < diagnostics.list().size(); ++i)
     fmt::print(stderr, "{}\n", diagnostics.format(diagnostics.list()[i]));

@@ -82,4 +82,11 @@ Signal cfc_filtered(const Signal& signal, double cfc) {
   return out;
 }
 
+const std::vector<std::string>& cfc_names() {
+  static const std::vector<std::string> names{"CFC60", "CFC180", "CFC600", "CFC1000"};
+  return names;
+}
+
+double cfc_of(const std::string& name) { return std::stod(name.substr(3)); }
+
 }  // namespace fabrica

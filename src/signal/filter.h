@@ -1,5 +1,8 @@
 #pragma once
 // SAE J211-1 / ISO 6487 channel frequency classes as digital filters without phase shift.
+#include <string>
+#include <vector>
+
 #include "signal/curve.h"
 
 namespace fabrica {
@@ -16,6 +19,11 @@ FilterCoefficients cfc_coefficients(double cfc, double interval_s);
 
 // Gain of the forward and backward pass at a frequency [Hz].
 double cfc_gain(const FilterCoefficients& c, double frequency, double interval_s);
+
+// CFC60, CFC180, CFC600, CFC1000: the classes that the standards name
+const std::vector<std::string>& cfc_names();
+// 60 of "CFC60"
+double cfc_of(const std::string& name);
 
 // The signal filtered forward and backward; x_unit must be a time, samples at a constant step.
 Signal cfc_filtered(const Signal& signal, double cfc);

@@ -23,7 +23,7 @@ struct SignalSpec {
   double x_scale = 1;
   std::optional<std::pair<double, double>> window;  // of the run's time: what is looked at
   std::optional<double> start_at;   // in `unit`: the abscissa counts from where |y| reaches it
-  std::string filter;               // one of filter_names(), or none
+  std::string filter;               // one of cfc_names(), or none
   std::string reference;            // "file.csv:column", or none
   std::string reference_x;          // its abscissa: a column of the same file; empty: the first one
   std::string low, high;            // corridor: columns of files, or none
@@ -42,7 +42,7 @@ struct CheckSpec {
   std::string over;   // the mean is taken over this, not over time
   std::optional<std::pair<double, double>> window;  // of the run's time: what is looked at
   std::optional<std::pair<double, double>> range;   // of `over`
-  std::string filter;                               // one of filter_names(), or none
+  std::string filter;                               // one of cfc_names(), or none
   std::string statistic;                            // one of statistic_names()
   std::string energy;  // of "failure": what is stored in the part that breaks
   std::optional<double> expected;

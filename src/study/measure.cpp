@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "signal/filter.h"
 #include "study/error.h"
 #include "study/rate_curve.h"
 #include "study/toml_fields.h"
@@ -104,7 +105,7 @@ const std::vector<std::string>& statistic_names() {
 
 std::string read_filter(Fields& f) {
   const std::string filter = f.text("filter", "");
-  if (!filter.empty()) f.one_of("filter", filter, filter_names());
+  if (!filter.empty()) f.one_of("filter", filter, cfc_names());
   return filter;
 }
 

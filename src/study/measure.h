@@ -45,7 +45,7 @@ double first_reaching(const std::vector<double>& x, const std::vector<double>& y
 // magnitude, with its sign), magnitude (without) and failure (see failure_load).
 const std::vector<std::string>& statistic_names();
 
-// Reads "filter": one of filter_names() (rate_curve.h), or nothing.
+// Reads "filter": one of cfc_names() (signal/filter.h), or nothing.
 std::string read_filter(Fields& f);
 
 // Reads "time_unit" of a case or a plan: ms (default) or s.

@@ -80,11 +80,6 @@ std::string rating_word(const std::string& method, double total) {
   return method == "cora" ? cora_word(total) : iso18571_word(total);
 }
 
-const std::vector<std::string>& filter_names() {
-  static const std::vector<std::string> names{"CFC60", "CFC180", "CFC600", "CFC1000"};
-  return names;
-}
-
 std::vector<double> filtered(const std::string& filter, const Curve& curve,
                              const std::string& time_unit) {
   const Signal s = signal_of(curve, "model", "", time_unit);
@@ -92,7 +87,7 @@ std::vector<double> filtered(const std::string& filter, const Curve& curve,
   // constant
   const double step = (curve.x.back() - curve.x.front()) / double(curve.x.size() - 1);
   const Signal even = resampled(s, curve.x.front(), curve.x.back(), step);
-  const Signal smooth = cfc_filtered(even, std::stod(filter.substr(3)));
+  const Signal smooth = cfc_filtered(even, cfc_of(filter));
   std::vector<double> out;
   for (const double x : curve.x) out.push_back(value_at(smooth, x));
   return out;

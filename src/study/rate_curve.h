@@ -32,10 +32,8 @@ Rating rate_curve(const std::string& method, const Curve& reference, const Curve
 // the word of a method's scale for a total
 std::string rating_word(const std::string& method, double total);
 
-// The filter classes of SAE J211 that cases use: CFC60, CFC180, CFC600, CFC1000.
-const std::vector<std::string>& filter_names();
-
-// The ordinates of a curve over time behind one of filter_names(), forwards and backwards.
+// The ordinates of a curve over time behind one of cfc_names() (signal/filter.h), forwards and
+// backwards.
 std::vector<double> filtered(const std::string& filter, const Curve& curve,
                              const std::string& time_unit);
 
