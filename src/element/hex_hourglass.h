@@ -46,10 +46,10 @@ struct HexHourglass {
 };
 
 // IHQ 4, 5: rate form, turned with the element's spin. With the corner mass m the mode has
-// (omega dt)^2 = k |gamma|^2 dt^2 / m, beside up to 4 TSSFAC^2 of the uniform modes that the step
-// is chosen for; together they may have 4. In a warped flat brick at its own step QM = 2/3 would
-// add up to 10. Four modes of 0.5 keep below 4 at TSSFAC = 0.9; a cube at its own step has 0.49
-// from QM = 0.1.
+// (omega dt)^2 = k |gamma|^2 dt^2 / m. The part 8 of |gamma|^2 stands square to the uniform modes
+// and to the other three: it may have 0.5, a cube at its own step has 0.49 from QM = 0.1. The part
+// |X_a|^2 B of a distorted brick lies among the uniform modes, which have up to 4 TSSFAC^2 = 3.24
+// of the 4 that are stable; it may have 0.1 in each of the four.
 template <class L>
 FABRICA_FN void hexhourglass_stiffness(const ElementParameters& p, const Point<L>& point,
                                        const L& dt, const L& density, const HexGradient<L>& g,
@@ -64,7 +64,7 @@ FABRICA_FN void hexhourglass_stiffness(const ElementParameters& p, const Point<L
   for (int a = 0; a < 4; ++a) {
     Vec3<L> q = s.template get<Vec3<L>>(3 * a);
     q += cross(w, q + L(0.5) * cross(w, q));
-    q += hg.bounded(a, k, most, squares) * hg.h[a];
+    q += hg.bounded(a, k, most, L(0.5 / 0.1) * squares) * hg.h[a];
     s.put(3 * a, q);
     hg.q[a] = q;
   }
