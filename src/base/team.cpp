@@ -21,6 +21,18 @@ void relax() {
 #endif
 }
 
+// A ticket: the number of its loop (16 bits), the end of the share (24), the next chunk to take
+// (24).
+constexpr int chunk_bits = 24;
+constexpr std::uint64_t chunk_mask = (std::uint64_t(1) << chunk_bits) - 1;
+std::uint64_t ticket_of(int loop, std::uint64_t first, std::uint64_t end) {
+  return std::uint64_t(std::uint16_t(loop)) << 2 * chunk_bits | end << chunk_bits | first;
+}
+bool open_in(int loop, std::uint64_t ticket) {
+  return std::uint16_t(ticket >> 2 * chunk_bits) == std::uint16_t(loop) &&
+         (ticket & chunk_mask) < (ticket >> chunk_bits & chunk_mask);
+}
+
 // waits for done() without giving the core away; false when that has taken too long
 template <class Done>
 bool spin(Done done, Clock::duration longest = spin_time) {
@@ -51,37 +63,39 @@ void Team::start(int chunks, Function function, void* data, bool own) {
   function_ = function, data_ = data, chunks_ = chunks;
   own_.store(own, std::memory_order_relaxed);
   done_.store(0, std::memory_order_relaxed);
-  for (int t = 0; t < size_; ++t) {
-    const std::uint64_t first = std::uint64_t(share_first(chunks, t, size_)),
-                        end = std::uint64_t(share_first(chunks, t + 1, size_));
-    shares_[t].ticket.store((end << 32) + first, std::memory_order_release);
-  }
+  const int loop = loop_.load(std::memory_order_relaxed) + 1;
+  for (int t = 0; t < size_; ++t)
+    shares_[t].ticket.store(ticket_of(loop, std::uint64_t(share_first(chunks, t, size_)),
+                                      std::uint64_t(share_first(chunks, t + 1, size_))),
+                            std::memory_order_release);
   loop_.fetch_add(1, std::memory_order_release);
   loop_.notify_all();
   const auto done = [&] { return done_.load(std::memory_order_acquire) == chunks; };
   if (own) {
     const auto begin = Clock::now();
-    work(0, false);
+    work(0, loop, false);
     if (spin(done, std::min<Clock::duration>(Clock::now() - begin, spin_time))) return;
   }
-  work(0, true);
+  work(0, loop, true);
   if (spin(done)) return;
   for (int n; (n = done_.load(std::memory_order_acquire)) != chunks;)
     done_.wait(n, std::memory_order_acquire);
 }
 
-// first the own share, then those of the others
-void Team::work(int thread, bool help) {
+// First the own share, then those of the others. Who still looks for chunks of this loop when the
+// next has begun takes none of that.
+void Team::work(int thread, int loop, bool help) {
   for (int k = 0; k < (help ? size_ : 1); ++k) {
     std::atomic<std::uint64_t>& ticket = shares_[(thread + k) % size_].ticket;
     // counted here and told once: the count of all goes from cache to cache
     int finished = 0;
-    for (;;) {
-      const std::uint64_t taken = ticket.fetch_add(1, std::memory_order_acq_rel);
-      const int end = int(taken >> 32), chunk = int(taken & 0xffffffffu);
-      if (chunk >= end) break;
-      function_(data_, chunk, thread);
+    for (std::uint64_t t = ticket.load(std::memory_order_acquire); open_in(loop, t);) {
+      if (!ticket.compare_exchange_weak(t, t + 1, std::memory_order_acq_rel,
+                                        std::memory_order_acquire))
+        continue;
+      function_(data_, int(t & chunk_mask), thread);
       ++finished;
+      t = ticket.load(std::memory_order_acquire);
     }
     if (finished == 0) continue;
     // those who wait are told by the last chunk alone; the number is of the loop that it is of
@@ -98,7 +112,7 @@ void Team::worker(int thread) {
       loop_.wait(seen, std::memory_order_acquire);
     seen = loop_.load(std::memory_order_acquire);
     if (stop_.load()) return;
-    work(thread, !own_.load(std::memory_order_relaxed));
+    work(thread, seen, !own_.load(std::memory_order_relaxed));
   }
 }
 

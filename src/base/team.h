@@ -67,13 +67,12 @@ class Team {
     start(chunks, &Call::run, const_cast<void*>(static_cast<const void*>(&fn)), own);
   }
   void start(int chunks, Function function, void* data, bool own);
-  void work(int thread, bool help);
+  void work(int thread, int loop, bool help);
   void worker(int thread);
 
   int size_;
   std::vector<std::thread> threads_;
-  // A thread's share: (its end << 32) + the next chunk to take; one addition takes it, and may run
-  // past the end.
+  // A thread's share of one loop: chunks up to its end are taken one by one.
   struct alignas(64) Share {
     std::atomic<std::uint64_t> ticket{0};
   };
