@@ -3,26 +3,45 @@
 
 FOLDER holds joints_ligaments.csv and bones/discs.csv. What changes on the way:
 - every stiffness becomes a slope [N/mm], or two and the strain where they change, so that one law reads all rows;
-- the lumbar ligaments get the bilinear moduli of the source that the disc's law comes from (PMC5592017 Table 2), because
-  laws of two papers must not meet in one joint; the area stays, k = E A / L;
+- the lumbar ligaments get the bilinear force and elongation of one table that has moduli, areas and lengths
+  (PMC2913991 Table 3): k = E A / L with all three of it, the same at each level; the distance of our attachments is no
+  length for it, half of it for some. Its flavum is the whole, a row one half of it. The capsules, which it lacks, have
+  the moduli of PMC5592017 Table 2, whose other moduli are the same, and 30 mm2 a side;
 - capsules of the facets lose their attachments: the source took the tips of wrong processes at several levels, the
   program finds the joint on the bones themselves;
 - strands: as many as the ligament is broad; discs: the height that literature states for the level.
 """
 import csv
+import math
 import pathlib
 import sys
 
-# E1, strain, E2 of the lumbar ligaments [MPa] (PMC5592017 Table 2)
-LUMBAR = {"ALL": (7.8, 0.12, 20.0), "PLL": (10.0, 0.11, 20.0), "LF": (15.0, 0.062, 19.5), "CL": (7.5, 0.25, 32.9),
-          "ITL": (10.0, 0.18, 58.7), "ISL": (10.0, 0.14, 11.6), "SSL": (8.0, 0.20, 15.0)}
-LUMBAR_SOURCE = "moduli PMC5592017 Table 2; area PMC2913991 Table 3; k = E A / L"
+# E1 [MPa], strain, E2 [MPa], area [mm2] of one row, length [mm] of the lumbar ligaments
+LUMBAR = {"ALL": (7.8, 0.12, 20.0, 53.0, 13.0), "PLL": (10.0, 0.11, 50.0, 16.0, 11.0),
+          "LF": (15.0, 0.062, 19.5, 33.5, 19.0), "ITL": (10.0, 0.18, 59.0, 1.8, 22.0),
+          "ISL": (10.0, 0.14, 11.6, 26.0, 13.0), "SSL": (8.0, 0.20, 15.0, 23.0, 11.0),
+          "CL": (7.5, 0.25, 32.9, 30.0, 8.0)}
+LUMBAR_SOURCE = {
+    "LF": "PMC2913991 Table 3, k = E A / L with its moduli, area and length; 67 mm2 are the whole flavum, a row is half of it",
+    "CL": "moduli PMC5592017 Table 2; area s13018-021-02237-4 Table 1: 60 mm2, taken for both sides as its 3.6 mm2 of the "
+          "intertransverse ligaments are twice the 1.8 of PMC2913991; length 8 mm estimated; k = E A / L"}
+LUMBAR_TABLE = "PMC2913991 Table 3, k = E A / L with its moduli, area and length"
+# Ligaments between spinous processes carry very little in the first half of flexion and up to 134 N, 0.75 of it the
+# interspinous one, at its end (Hukins 1990, abstract, PubMed 2395361): their reference length is the distance at half
+# the flexion [deg] of the level, upper vertebra (Bruno 2015, Allaire 2020: data/anatomy/joint_axes.csv) about the
+# middle between the longitudinal ligaments.
+FLEXION = {"L1": 8.0, "L2": 10.0, "L3": 12.0, "L4": 13.0}
+SPINOUS_SOURCE = "; length at half of flexion, as they carry little before (Hukins 1990, PubMed 2395361, abstract)"
 # k [N/mm] behind the toe, its length [mm] and its force [N], of the whole ligament: averages of tests at 0.5 1/s,
 # bone to bone, of the levels C2-C3 to C7-T1 together (Mattucci and Cronin 2015); flavum: both halves
 CERVICAL = {"ALL": (140.4, 1.79, 116.0), "PLL": (217.6, 0.79, 69.0), "LF": (117.7, 3.82, 119.7),
             "CL": (82.2, 1.33, 50.2), "ISL": (19.4, 3.02, 28.6)}
 CERVICAL_SOURCE = ("Mattucci and Cronin 2015 J Mech Behav Biomed Mater 41:251, averages at 0.5 1/s as in "
                    "github.com/IMMC-UWaterloo/ARCGen TestCase_MattucciLigaments.m")
+# N/mm of the three strands of the membrane of the forearm, by their place; the middle one is its tendinous part
+FOREARM = {"35": 28.0, "55": 138.0, "75": 28.0}
+FOREARM_SOURCE = ("138 +- 24 N/mm of the tendinous part: Pan 2009 Chin J Orthop 29:572 (abstract); it makes 71 % of the "
+                  "membrane: Hotchkiss 1989 J Hand Surg 14:256 (abstract), the rest halved")
 # strands and breadth [mm] over which they spread
 BROAD = {"ALL": (3, 14), "PLL": (3, 10), "LF": (2, 8), "ISL": (2, 6), "SSL": (1, 0), "CL": (4, 10), "ITL": (1, 0),
          "SI": (3, 16), "sacrospinous": (3, 14), "sacrotuberous": (3, 16), "iliolumbar": (3, 12), "pubic": (3, 14),
@@ -73,22 +92,41 @@ def law(row, length):
     kind, area = row["name"].split("_")[0], float(row["area_mm2"] or 0)
     source = row["source"]
     if row["stiffness_unit"] == "N/mm (phases)":
-        e1, strain, e2 = LUMBAR[kind]
-        return e1 * area / length, strain, e2 * area / length, "", "", LUMBAR_SOURCE
+        e1, strain, e2, area, l = LUMBAR[kind]
+        return (e1 * area / l, strain * l / length, e2 * area / l, "", "", LUMBAR_SOURCE.get(kind, LUMBAR_TABLE))
     if kind in CERVICAL and row["bone1"] in ("C2", "C3", "C4", "C5", "C6", "C7"):
         half = 0.5 if kind == "LF" else 1.0  # a row is one side
         k, toe, force = CERVICAL[kind]
         return half * k, "", "", toe, half * force, CERVICAL_SOURCE
+    if row["name"].startswith("interosseous_membrane_forearm"):
+        return FOREARM[row["name"][-2:]], "", "", "", "", FOREARM_SOURCE
     k = float(row["stiffness"] or 0)
     return (k / length if row["stiffness_unit"].startswith("N/strain") else k), "", "", "", "", source
 
 
+def place(row):
+    """mean of the ends along x [mm], each in the frame of its bone"""
+    return 0.5 * (float(row["x1_mm"]) + float(row["x2_mm"]))
+
+
+def flexed(rows, row):
+    """by how much half of flexion lengthens a ligament between spinous processes [mm]"""
+    level = row["name"].split("_", 1)[1]
+    middle = sum(place(r) for r in rows if r["name"] in ("ALL_" + level, "PLL_" + level)) / 2
+    return math.radians(FLEXION[row["bone1"]] / 2) * (middle - place(row))
+
+
 def ligaments(folder):
-    for row in table(folder / "joints_ligaments.csv"):
+    rows = table(folder / "joints_ligaments.csv")
+    for row in rows:
         length = max(float(row["length_stand_mm"]), SHORTEST)
+        spinous = row["name"].split("_")[0] in ("ISL", "SSL") and row["bone1"] in FLEXION
+        if spinous:
+            length = round(length + flexed(rows, row), 1)
         if row["name"].startswith("CL_"):
             length = 8.0 if row["bone1"].startswith("L") else 6.0
         k1, e1, k2, toe, force, source = law(row, length)
+        source += SPINOUS_SOURCE if spinous else ""
         strands, spread = breadth(row["name"])
         slack = row["note"].split("slack ")[1].split(" mm")[0] if "slack" in row["note"] else ""
         ends = [row[c] for c in ("x1_mm", "y1_mm", "z1_mm", "x2_mm", "y2_mm", "z2_mm")]
@@ -98,10 +136,14 @@ def ligaments(folder):
             attach, k1, source = "muscle", 10.0, "tendon in series with a passive muscle; estimated"
         if row["name"] == "inguinal":
             source += "; both ends on the hip bone"
-        confidence = "read" if source in (LUMBAR_SOURCE, CERVICAL_SOURCE) else row["confidence"]
+        lumbar = row["stiffness_unit"] == "N/mm (phases)"
+        area = f"{LUMBAR[row['name'].split('_')[0]][3]:g}" if lumbar else row["area_mm2"]
+        if source == FOREARM_SOURCE:
+            row["confidence"] = "stiffness read; places from memory"
+        confidence = "read" if lumbar or source == CERVICAL_SOURCE else row["confidence"]
         yield [row["name"], row["region"], row["side"], row["bone1"], row["frame1"], *ends[:3], row["bone2"],
-               row["frame2"], *ends[3:], attach, f"{length:g}", row["area_mm2"],
-               f"{k1:.4g}", e1 and f"{e1:g}", k2 and f"{k2:.4g}",
+               row["frame2"], *ends[3:], attach, f"{length:g}", area,
+               f"{k1:.4g}", e1 and f"{e1:.4g}", k2 and f"{k2:.4g}",
                toe and f"{toe:g}", force and f"{force:.4g}", strands, spread, slack, source, confidence]
 
 
