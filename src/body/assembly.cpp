@@ -234,8 +234,11 @@ class Assembly {
         p.material.empty() ? materials_.add(p.name, p.law) : materials_.use(p.material);
     // a layer on one bone takes contact forces at single nodes: without stiffness its one-point
     // bricks give way in modes that strain nothing
-    const bool layer = p.kind == PieceKind::brick && p.bone_a == p.bone_b;
-    const Id pid = part(p.region, p.name, piece_section(p), material, layer ? layer_hourglass : 0,
+    const bool brick = p.kind == PieceKind::brick, layer = brick && p.bone_a == p.bone_b;
+    const Id pid = part(p.region, p.name, piece_section(p), material,
+                        layer   ? layer_hourglass
+                        : brick ? stiff_hourglass
+                                : 0,
                         {0, "", p.material.empty() ? p.law.keyword : p.material, p.source, -1,
                          index, int(p.bricks.size() + p.quads.size() + p.lines.size()), false});
     piece_elements(p, pid, node);
