@@ -87,11 +87,16 @@ void Surfaces::collect(const NearPair& pair, double margin, double reach,
   }
 }
 
-std::vector<Touch> Surfaces::overlapping(int a, int b, double reach) const {
+std::vector<Touch> Surfaces::both_ways(NearPair pair, double margin, double reach) const {
   std::vector<Touch> list;
-  collect({a, b, 0, true}, 0, reach, list);
-  collect({b, a, 0, true}, 0, reach, list);
+  collect(pair, margin, reach, list);
+  std::swap(pair.a, pair.b);
+  collect(pair, margin, reach, list);
   return list;
+}
+
+std::vector<Touch> Surfaces::overlapping(int a, int b, double reach) const {
+  return both_ways({a, b, 0, true}, 0, reach);
 }
 
 double Surfaces::way_out(int a, const std::vector<Touch>& overlapping, const Point& axis,
@@ -138,11 +143,7 @@ void Surfaces::part_along_axis(const NearPair& pair, double reach, std::vector<T
 }
 
 std::vector<Touch> Surfaces::touches(const NearPair& pair, double margin, double reach) const {
-  std::vector<Touch> list;
-  collect(pair, margin, reach, list);
-  NearPair back = pair;
-  std::swap(back.a, back.b);
-  collect(back, margin, reach, list);
+  std::vector<Touch> list = both_ways(pair, margin, reach);
   if (pair.tied) part_along_axis(pair, reach, list);
   return list;
 }

@@ -55,6 +55,8 @@ class Surfaces {
 
  private:
   void collect(const NearPair& pair, double margin, double reach, std::vector<Touch>& list) const;
+  // where nodes of either bone touch the other
+  std::vector<Touch> both_ways(NearPair pair, double margin, double reach) const;
   void part_along_axis(const NearPair& pair, double reach, std::vector<Touch>& list) const;
   const std::vector<PlacedBone>& bones_;
   BoneSurfaces surfaces_;
