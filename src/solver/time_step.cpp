@@ -41,7 +41,11 @@ double Simulation::smallest_element_step() {
 }
 
 // Smallest stable step of all elements times TSSFAC; it may drop at once but grows by at most 5 % a
-// cycle.
+// cycle, and its last tenth by 0.01 %. The step of a solid is 6 % smaller while it is pressed, for
+// its bulk viscosity: a step that followed a vibrating element up and down would pump another mode
+// of the same frequency, and hourglass modes have nothing to damp them.
+constexpr double quick_growth = 1.05, near_enough = 1.1, slow_growth = 1.0001;
+
 void Simulation::choose_time_step() {
   double step = 1e30;
   for (const Tile& t : tiles_.tiles) step = std::min(step, double(t.time_step));
@@ -52,7 +56,9 @@ void Simulation::choose_time_step() {
     step = model_.controls.initial_time_step;
   if (model_.controls.time_step_curve >= 0)
     step = std::min(step, model_.curves[model_.controls.time_step_curve].at(state_.time));
-  if (state_.dt_previous > 0) step = std::min(step, 1.05 * state_.dt_previous);
+  if (state_.dt_previous > 0)
+    step = std::min(step, (step > near_enough * state_.dt_previous ? quick_growth : slow_growth) *
+                              state_.dt_previous);
   // a model without deformable elements takes what resolves its motion
   if (step >= 1e29) step = end_time_ / 1000;
   if (state_.cycle == 0) initial_step_ = step;
