@@ -26,6 +26,14 @@ constexpr double most_shift = 3.5;       // [mm] of an endplate; L3-L4 needs 3.4
 // E [MPa] of the fibres from the outermost ring inwards (s41598-025-22755-z Table 1: 550 to 360
 // MPa) and their share of the annulus (Shirazi-Adl 1986: 16 %)
 constexpr double fibre_outer = 0.550, fibre_inner = 0.360, fibre_share = 0.16;
+// [degrees] to the plane of the disc (VIVA+ 0.2.5, cervical annulus: +-60, 52.5 and 45 degrees to
+// its axis from the outside inwards)
+constexpr double angle_outer = 30, angle_inner = 45;
+// strain at the end of the toe and exponent of the force in it, as that annulus has them: 0.041 and
+// 2.5 outside, 0.073 and 3.5 inside (slope over secant at the second of its superficial and at the
+// third of its deep points)
+constexpr double toe_outer = 0.041, toe_inner = 0.073, exponent_outer = 2.5, exponent_inner = 3.5;
+constexpr double farthest_around = 1.0 / 6;  // of the way around, that a fibre spans
 
 struct DiscGrid {
   int across, rings, layers;  // bricks across the nucleus, in the annulus, along the height
@@ -49,6 +57,12 @@ std::array<double, 2> nucleus_place(const DiscSpace& space, double a, double b) 
           edge * (round * r * std::sin(phi) + (1 - round) * 0.82 * b)};
 }
 
+// a node that a fibre may end on, its length [mm] then and by how much its angle misses
+struct FibreEnd {
+  int node = -1;
+  double length = 0, miss = 0;
+};
+
 class DiscMaker {
  public:
   DiscMaker(const std::vector<PlacedBone>& bones, const DiscRow& row, BetweenBones& between)
@@ -67,7 +81,7 @@ class DiscMaker {
   std::vector<std::array<double, 2>> rim() const;
   void nucleus(DiscReport& report);
   void ring(int number, DiscReport& report);
-  void fibres(int ring_piece, int number);
+  void fibres(int number);
   void ties();
   void smooth(DiscReport& report);
   void finish(PieceBuilder& builder, const std::string& tissue, const char* law,
@@ -81,6 +95,7 @@ class DiscMaker {
   // of the piece made last: its outer columns, counter-clockwise
   int last_piece_ = -1, first_piece_ = 0;
   std::vector<int> ring_pieces_;
+  std::vector<std::vector<Column>> ring_columns_;  // outer ones of each ring
   std::vector<Column> last_columns_;
   std::vector<PieceNode> top_, bottom_;
 };
@@ -164,6 +179,7 @@ void DiscMaker::ring(int number, DiscReport& report) {
     }
   last_piece_ = int(between_.pieces.size());
   last_columns_ = outer;
+  ring_columns_.push_back(outer);
   for (const Column& column : outer) {
     bottom_.push_back(piece_node(builder.piece, last_piece_, column.front()));
     top_.push_back(piece_node(builder.piece, last_piece_, column.back()));
@@ -172,32 +188,65 @@ void DiscMaker::ring(int number, DiscReport& report) {
   finish(builder, fmt::format("annulus{}", number), "annulus", report);
 }
 
-// Two fibres cross each outer face of a ring; each stands for half of the fibres of its brick:
+// Each brick of a ring has two families of fibres, of half its share each: from a corner of its
+// outer face to the node of that face of the ring, up or down, whose direction is nearest to
+// theirs.
 //   k = E A / L,   A L = fibre_share V / 2
-void DiscMaker::fibres(int ring_piece, int number) {
+void DiscMaker::fibres(int number) {
   PieceBuilder builder(bones_);
+  const int ring_piece = ring_pieces_[std::size_t(number - 1)];
+  const auto& columns = ring_columns_[std::size_t(number - 1)];
   const Piece& ring = between_.pieces[std::size_t(ring_piece)];
   const double t = grid_.rings == 1 ? 1 : double(number - 1) / (grid_.rings - 1);
   const double E = (1 - t) * fibre_inner + t * fibre_outer;
-  for (const auto& brick : ring.bricks) {
+  const double wanted = ((1 - t) * angle_inner + t * angle_outer) * M_PI / 180;
+  const int n = int(columns.size()), layers = grid_.layers;
+  std::map<std::pair<int, int>, double> stiffness;
+  for (std::size_t e = 0; e < ring.bricks.size(); ++e) {
     Corners corners;
-    for (std::size_t i = 0; i < 8; ++i) corners[i] = ring.nodes[std::size_t(brick[i])].x;
-    const double volume = volume_of(corners);
-    for (const auto& [a, b] : {std::pair<int, int>{1, 6}, {2, 5}}) {
-      const double length = norm(corners[std::size_t(a)] - corners[std::size_t(b)]);
-      builder.piece.lines.push_back(
-          {builder.of_piece(between_.pieces, ring_piece, brick[std::size_t(a)]),
-           builder.of_piece(between_.pieces, ring_piece, brick[std::size_t(b)])});
-      builder.piece.line_scale.push_back(E * fibre_share * volume / 2 / (length * length));
+    for (std::size_t i = 0; i < 8; ++i) corners[i] = ring.nodes[std::size_t(ring.bricks[e][i])].x;
+    const double scale = E * fibre_share * volume_of(corners) / 2;
+    const int column = int(e) / layers, layer = int(e) % layers;
+    const bool up = 2 * layer < layers;  // the longer way
+    for (const int around : {1, -1}) {
+      const int from_column = around > 0 ? column : (column + 1) % n;
+      const int from = columns[std::size_t(from_column)][std::size_t(up ? layer : layer + 1)];
+      FibreEnd best;
+      for (int q = 1; q <= std::max(1, int(std::lround(farthest_around * n))); ++q)
+        for (int p = 1; p <= (up ? layers - layer : layer + 1); ++p) {
+          const auto& there = columns[std::size_t((from_column + around * q + n) % n)];
+          const int to = there[std::size_t(up ? layer + p : layer + 1 - p)];
+          const Point d = ring.nodes[std::size_t(to)].x - ring.nodes[std::size_t(from)].x;
+          const double length = norm(d);
+          const double angle = std::asin(std::abs(dot(d, space_.frame().normal)) / length);
+          if (best.node < 0 || std::abs(angle - wanted) < best.miss)
+            best = {to, length, std::abs(angle - wanted)};
+        }
+      stiffness[std::minmax(from, best.node)] += scale / (best.length * best.length);
     }
+  }
+  double length = 0;
+  for (const auto& [ends, k] : stiffness) {
+    length += norm(ring.nodes[std::size_t(ends.first)].x - ring.nodes[std::size_t(ends.second)].x) /
+              double(stiffness.size());
+    builder.piece.lines.push_back({builder.of_piece(between_.pieces, ring_piece, ends.first),
+                                   builder.of_piece(between_.pieces, ring_piece, ends.second)});
+    builder.piece.line_scale.push_back(k);
   }
   const PlacedBone& upper = bones_[std::size_t(row_.upper)];
   builder.piece.name =
       fmt::format("{}.mid.disc_{}.fibres{}", name_of(upper.region), row_.name, number);
   builder.piece.region = upper.region;
   builder.piece.kind = PieceKind::spring;
-  builder.piece.law =
-      pull_only("moduli s41598-025-22755-z Table 1; share of the annulus Shirazi-Adl 1986", "read");
+  LigamentStiffness law;  // of 1 kN/mm behind the toe: the scale of a line is its stiffness
+  law.length = length, law.k1 = 1;
+  law.toe = ((1 - t) * toe_inner + t * toe_outer) * length;
+  law.toe_force = law.toe / ((1 - t) * exponent_inner + t * exponent_outer);
+  builder.piece.law = ligament_curve(
+      law, 1,
+      "moduli s41598-025-22755-z Table 1; share of the annulus Shirazi-Adl 1986; angles and toe "
+      "VIVA+ 0.2.5 vivaplus-materials.k",
+      "read");
   builder.piece.source = builder.piece.law.source;
   builder.piece.bone_a = part_name(upper, "");
   builder.piece.bone_b = part_name(bones_[std::size_t(row_.lower)], "");
@@ -316,8 +365,7 @@ DiscReport DiscMaker::make() {
     report.area += 0.5 * r * r * 2 * M_PI / steps;
   }
   smooth(report);
-  for (int number = 1; number <= grid_.rings; ++number)
-    fibres(ring_pieces_[std::size_t(number - 1)], number);
+  for (int number = 1; number <= grid_.rings; ++number) fibres(number);
   ties();
   report.height = report.volume / report.area;
   return report;
