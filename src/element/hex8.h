@@ -12,6 +12,7 @@
 //                         the element
 //   both bounded in distorted bricks (hex_hourglass.h)
 //   assumed strain (6)    Belytschko-Bindeman, in a frame that turns with the element
+//   of 4 to 6 h is taken at mid step, for their energy
 // Source: Flanagan and Belytschko, IJNME 17 (1981) 679; Belytschko and Bindeman, CMAME 105 (1993)
 // 225.
 #include "element/hex_geometry.h"
@@ -102,7 +103,7 @@ struct Hex8 {
     // forces: T = V sigma - sum_a Q_a (Gamma_a . x), so that (1) becomes f = -T grad N - Q Gamma
     HexHourglass<L> hg;
     hg.measure(p.hourglass != 1, c.x, c.v, gradient);
-    hexhourglass_forces(p, point, dt, density, sound, l, g, c, gradient,
+    hexhourglass_forces(p, point, dt, density, sound, l, g, c, gradient, middle,
                         StateView<L>{s.block + hourglass_at<M> * block_size}, hg, totals);
     if constexpr (M::can_fail)
       hg.scale(point.alive), totals.alive = point.alive, stress = point.alive * stress;

@@ -40,6 +40,14 @@ struct HexHourglass {
   FABRICA_FN L bounded(int a, const L& k, const L& bound, const L& squares) const {
     return min(k, bound / fma(dot(x[a], x[a]), squares, L(8.0)));
   }
+  // gamma_a . v at mid step, where the velocity belongs: with the geometry of its end instead a
+  // mode gains or loses energy in proportion to the step
+  FABRICA_FN void to_mid_step(const Mat3<L>& gradient, const Mat3<L>& middle, const L& dt) {
+    for (int a = 0; a < 4; ++a) {
+      const Vec3<L> u = h[a] + gradient * x[a];  // Gamma_a . v
+      h[a] = u - middle * (x[a] - L(0.5) * dt * u);
+    }
+  }
   FABRICA_FN void scale(const L& s) {
     for (int a = 0; a < 4; ++a) q[a] = s * q[a];
   }
@@ -70,11 +78,12 @@ FABRICA_FN void hexhourglass_stiffness(const ElementParameters& p, const Point<L
   }
 }
 
-// IHQ 6: assumed strain stabilisation in a corotational frame (rows e[0..2])
+// IHQ 6: assumed strain stabilisation in a corotational frame (rows e[0..2]); gives its work in a
+// unit of time
 template <class L>
-FABRICA_FN void hexhourglass_assumed_strain(const ElementParameters& p, const Point<L>& point,
-                                            const L& dt, const Vec3<L> (&x)[8], StateView<L> s,
-                                            HexHourglass<L>& hg) {
+FABRICA_FN L hexhourglass_assumed_strain(const ElementParameters& p, const Point<L>& point,
+                                         const L& dt, const Vec3<L> (&x)[8], StateView<L> s,
+                                         HexHourglass<L>& hg) {
   const Vec3<L> d1 = x[6] - x[0], d2 = x[7] - x[1], d3 = x[4] - x[2], d4 = x[5] - x[3];
   const Vec3<L> r[3] = {d1 - d2 - d3 + d4, d1 + d2 - d3 - d4, d1 + d2 + d3 + d4};
   Vec3<L> e[3];
@@ -101,12 +110,18 @@ FABRICA_FN void hexhourglass_assumed_strain(const ElementParameters& p, const Po
     rate[3][i] = L(2.0 / 3.0) * G * (L(1.0) + nu) * hii * q[3][i];
   }
   const L scale = L(0.125 * double(p.hourglass_coefficient));
+  const auto global = [&](const Vec3<L>& q) {
+    return scale * (q.x * e[0] + q.y * e[1] + q.z * e[2]);
+  };
+  L work = L(0.0);
   for (int a = 0; a < 4; ++a) {
-    Vec3<L> stored = s.template get<Vec3<L>>(3 * a);
-    stored += Vec3<L>{rate[a][0], rate[a][1], rate[a][2]};
+    const Vec3<L> old = s.template get<Vec3<L>>(3 * a);
+    const Vec3<L> stored = old + Vec3<L>{rate[a][0], rate[a][1], rate[a][2]};
     s.put(3 * a, stored);
-    hg.q[a] = scale * (stored.x * e[0] + stored.y * e[1] + stored.z * e[2]);
+    hg.q[a] = global(stored);
+    work += L(0.5) * dot(point.alive * hg.q[a] + global(old), hg.h[a]);
   }
+  return work;
 }
 
 // IHQ 1-3. A damper k on a velocity that is half a step old is stable up to k |gamma|^2 dt / m = 2
@@ -132,19 +147,18 @@ template <class L>
 FABRICA_FN void hexhourglass_forces(const ElementParameters& p, const Point<L>& point, const L& dt,
                                     const L& density, const L& sound, const L& length,
                                     const HexGradient<L>& g, const Corners<L, 8>& c,
-                                    const Mat3<L>& gradient, StateView<L> s, HexHourglass<L>& hg,
-                                    Totals<L>& totals) {
+                                    const Mat3<L>& gradient, const Mat3<L>& middle, StateView<L> s,
+                                    HexHourglass<L>& hg, Totals<L>& totals) {
   L work = L(0.0);
-  if (p.hourglass >= 4) {
+  if (p.hourglass == 6) {
+    hg.to_mid_step(gradient, middle, dt);
+    work = hexhourglass_assumed_strain(p, point, dt, c.x, s, hg);
+  } else if (p.hourglass >= 4) {
+    hg.to_mid_step(gradient, middle, dt);
     Vec3<L> old[4];
     for (int a = 0; a < 4; ++a) old[a] = s.template get<Vec3<L>>(3 * a);
-    if (p.hourglass == 6) {
-      hexhourglass_assumed_strain(p, point, dt, c.x, s, hg);
-      for (int a = 0; a < 4; ++a) work += dot(hg.q[a], hg.h[a]);
-    } else {
-      hexhourglass_stiffness(p, point, dt, density, g, gradient, s, hg);
-      for (int a = 0; a < 4; ++a) work += L(0.5) * dot(point.alive * hg.q[a] + old[a], hg.h[a]);
-    }
+    hexhourglass_stiffness(p, point, dt, density, g, middle, s, hg);
+    for (int a = 0; a < 4; ++a) work += L(0.5) * dot(point.alive * hg.q[a] + old[a], hg.h[a]);
   } else {
     work = hexhourglass_viscous(p, dt, density, sound, length, g, hg);
   }
