@@ -50,7 +50,8 @@ class Assembly {
 
  private:
   static constexpr Id solid_section = 1, bone_shell_section = 2, bending_section = 3,
-                      stiff_hourglass = 1, layer_hourglass = 2, cortex_hourglass = 3;
+                      stiff_hourglass = 1, layer_hourglass = 2, cortex_hourglass = 3,
+                      disc_hourglass = 4;
   // Of a flat brick of thickness h under the mode u = d xi (1 + zeta) / 2 the law holds
   // QM C A d^2 / (4 h), full integration C A d^2 / (6 h), C = K + 4 G / 3.
   static constexpr double flat_brick = 2.0 / 3.0;
@@ -84,6 +85,12 @@ class Assembly {
         .set("hgid", cortex_hourglass)
         .set("ihq", 4)
         .set("qm", 0.05);
+    // nearly incompressible: IHQ 5 would take its stiffness from the bulk modulus, 50 times that of
+    // shear; bending and not the control should hold a nucleus
+    titled(builder_, "HOURGLASS", "assumed strain for discs")
+        .set("hgid", disc_hourglass)
+        .set("ihq", 6)
+        .set("qm", 1);
   }
 
   Id part(Region region, const std::string& name, Id section, Id material, Id hourglass,
@@ -237,7 +244,7 @@ class Assembly {
     const bool brick = p.kind == PieceKind::brick, layer = brick && p.bone_a == p.bone_b;
     const Id pid = part(p.region, p.name, piece_section(p), material,
                         layer   ? layer_hourglass
-                        : brick ? stiff_hourglass
+                        : brick ? disc_hourglass
                                 : 0,
                         {0, "", p.material.empty() ? p.law.keyword : p.material, p.source, -1,
                          index, int(p.bricks.size() + p.quads.size() + p.lines.size()), false});
