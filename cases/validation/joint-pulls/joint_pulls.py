@@ -70,8 +70,9 @@ def pull(fabrica, folder, name, joint, axis, sign, force):
     support = (f'free   = [{free}]\n'
                f'load   = [{{ along = "{axis}", force = [[0, 0], [10, {kilonewtons}], [20, {kilonewtons}]] }}]')
     stem = folder / f"{name}_{'+' if sign > 0 else '-'}{axis}"
-    apart, failed = joint_rig.run(fabrica, stem, joint_rig.rig(timing, *joint, "pulled", support),
-                                   "standard" if name in AT_STANDARD else "coarse")
+    held, pulled, others = joint
+    apart, failed = joint_rig.run(fabrica, stem, joint_rig.rig(timing, [held], [pulled], others, "pulled", support),
+                                  "standard" if name in AT_STANDARD else "coarse")
     if failed:
         return None, None, failed
     last = joint_rig.histories(stem / "csv" / "rbdout.csv")[-1]

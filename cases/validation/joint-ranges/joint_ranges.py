@@ -3,15 +3,16 @@
 
 joint_ranges.py FABRICA OUT [JOINT ...]
 
-Each joint is made of its bones alone in a test rig: the first bone is held, the second turned about the centre of the joint
-(data/anatomy/joint_tree.csv) at a steady rate after a start of 5 ms, while it may shift freely. The mass of the bone stands at that
-centre: swung about it, it would load the joint. Ranges are those of data/anatomy/joint_axes.csv, axes rounded to those of the held
-bone's frame. Torque on the turned bone, from the work W of the motion and the kinetic energy T:
+Joints are the rows of data/anatomy/joint_axes.csv, named as in "L3 flexion"; JOINT is a regular expression of whole names. Each is
+made of its bones alone in a test rig: bones are held, others turned about the centre of the joint (data/anatomy/joint_tree.csv) and
+about its axis, along which the rig is laid, at a steady rate after a start of 5 ms; the turned may shift freely. The mass of a bone
+stands at that centre: swung about it, it would load the joint. Torque on the turned bones, from the work W of the motion
+and the kinetic energy T:
 
     M = d(W - T) / d(angle)
 
-as means over fifths of the range, against the motion where positive; a positive angle of flexion turns about +y (knee and elbow about
--y, so that they bend). Exit status 1 if a run does not reach its end or a joint comes apart by more than 3 mm.
+as means over fifths of the range, against the motion where positive. Exit status 1 if a run does not reach its end or a joint comes
+apart by more than 3 mm.
 """
 import csv
 import math
@@ -22,76 +23,109 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "cases/validation"))
 import joint_rig  # noqa: E402
 
-# joint: held, turned, others, axis, sign, joint and coordinate of the table
-JOINTS = {
-    "C4 flexion": ("C5", "C4", [], "ry", 1, "C4", "flexion"),
-    "T6 flexion": ("T7", "T6", [], "ry", 1, "T6", "flexion"),
-    "L3 flexion": ("L4", "L3", [], "ry", 1, "L3", "flexion"),
-    "L3 lateral": ("L4", "L3", [], "rx", 1, "L3", "lateral"),
-    "hip flexion": ("right.hip_bone", "right.femur", [], "ry", -1, "hip", "flexion"),
-    "knee flexion": ("right.femur", "right.tibia", ["right.fibula", "right.patella"], "ry", 1, "knee", "flexion"),
-    "knee flexion without fibula": ("right.femur", "right.tibia", ["right.patella"], "ry", 1, "knee", "flexion"),
-    "ankle dorsiflexion": ("right.tibia", "right.talus", ["right.fibula", "right.calcaneus"], "ry", -1, "ankle", "dorsiflexion"),
-    "shoulder flexion": ("right.scapula", "right.humerus", [], "ry", -1, "shoulder", "flexion"),
-    "elbow flexion": ("right.humerus", "right.ulna", ["right.radius"], "ry", -1, "elbow", "flexion"),
+CARPALS = ["scaphoid", "lunate", "triquetrum", "pisiform", "trapezium", "trapezoid", "capitate", "hamate"]
+# joint: held, turned, carried along, where they are not the parent and the child of joint_tree.csv
+BONES = {
+    "L5": (["sacrum"], ["L5"], []),
+    "head": (["C1"], ["skull"], []),
+    "hip": (["hip_bone"], ["femur"], []),
+    "knee": (["femur"], ["tibia"], ["fibula", "patella"]),
+    "ankle": (["tibia"], ["talus"], ["fibula", "calcaneus"]),
+    "subtalar": (["talus", "tibia", "fibula"], ["calcaneus"], []),
+    "clavicle": (["manubrium", "rib1"], ["clavicle"], []),
+    "elbow": (["humerus"], ["ulna"], ["radius"]),
+    "forearm": (["ulna", "humerus"], ["radius"], []),
+    "wrist": (["radius", "ulna"], CARPALS[4:], CARPALS[:4]),
+    **{f"mcp{ray}": ([f"metacarpal{ray}"], [f"hand_phalanx{ray}_proximal"], []) for ray in range(1, 6)},
+    "cmc1": (["trapezium"], ["metacarpal1"], []),
 }
+LEFT_OUT = {"pelvis": "turns the whole body", "patella": "is drawn by quadriceps and tendon, which are not made"}
+MIDLINE = {"skull", "sacrum", "manubrium", *(f"{part}{n}" for part, last in (("C", 7), ("T", 12), ("L", 5)) for n in range(1, last + 1))}
+# the frames of assembly.csv that carry them
+CARRIERS = {"skull": "head", "sacrum": "pelvis", "hip_bone": "pelvis", "manubrium": "thorax", "talus": "foot", "calcaneus": "foot",
+            **{bone: "hand" for bone in CARPALS}}
+# bones of the hand are rigid at coarse and cannot be potted
+AT_STANDARD = {"wrist", "cmc1", "ip1", *(f"{joint}{ray}" for joint in ("mcp", "pip", "dip") for ray in range(1, 6))}
 RATE = 2  # degrees / ms
 START = 5  # ms; twice that and half the rate where other bones are carried along
 
 
-def row_of(table, **keys):
+def rows_of(table):
     lines = [line for line in (ROOT / "data/anatomy" / table).read_text().splitlines() if not line.startswith("#")]
-    for row in csv.DictReader(lines):
-        if all(row[key] == value for key, value in keys.items()):
-            return row
-    raise SystemExit(f"data/anatomy/{table} has no {keys}")
+    return list(csv.DictReader(lines))
 
 
-def limits(joint, coordinate):
-    row = row_of("joint_axes.csv", joint=joint, coordinate=coordinate)
-    return float(row["low"]), float(row["high"])
+TREE = {row["joint"]: row for row in rows_of("joint_tree.csv")}
+FRAMES = {row["frame"]: row for row in rows_of("assembly.csv") if row["posture"] == "stand"}
+JOINTS = {f"{row['joint']} {row['coordinate']}": row for row in rows_of("joint_axes.csv") if row["joint"] not in LEFT_OUT}
 
 
-def centre(joint):
-    """Of a joint in the frame of the bone that it turns [mm]."""
-    row = row_of("joint_tree.csv", joint=joint)
-    frame = row_of("assembly.csv", frame={"talus": "foot"}.get(row["child"], row["child"]), posture="stand")
-    from_origin = [float(row[x]) - float(frame["t" + x]) for x in "xyz"]
-    return [round(sum(float(frame[f"r{i + 1}{j}"]) * from_origin[i] for i in range(3)), 2) for j in (1, 2, 3)]
+def sided(bones):
+    return [bone if bone in MIDLINE else "right." + bone for bone in bones]
 
 
-def torques(folder, radians, time, start):
+def bones_of(joint):
+    return BONES.get(joint) or ([TREE[joint]["parent"]], [TREE[joint]["child"]], [])
+
+
+def frame_of(bone):
+    hand = bone.startswith("hand_phalanx") or bone.startswith("metacarpal")
+    return FRAMES["hand" if hand else CARRIERS.get(bone, bone)]
+
+
+def in_frame(frame, direction):
+    return [sum(float(frame[f"r{i + 1}{j + 1}"]) * direction[i] for i in range(3)) for j in range(3)]
+
+
+def at_frame(frame, point):
+    return [round(x, 3) for x in in_frame(frame, [point[i] - float(frame["t" + x]) for i, x in enumerate("xyz")])]
+
+
+def torques(folder, angle):
+    """Means over fifths of the way, those that the run came to, and how far that was [degrees]."""
     rows = joint_rig.histories(folder / "csv/glstat.csv")
-    rate = abs(radians) / (time - start / 2)
     work = [float(r["external_work"]) - float(r["kinetic_energy"]) for r in rows]
-
-    def angle(t):
-        return rate * t * t / (2 * start) if t < start else rate * (t - start / 2)
-
     angles = [angle(float(r["time"])) for r in rows]
+    way = angle(math.inf)
     out = []
     for k in range(5):
-        low, high = abs(radians) * k / 5, abs(radians) * (k + 1) / 5
+        low, high = way * k / 5, way * (k + 1) / 5
+        if angles[-1] < high - way / 50:
+            break
         i = min(range(len(angles)), key=lambda n: abs(angles[n] - low))
         j = min(range(len(angles)), key=lambda n: abs(angles[n] - high))
         out.append((work[j] - work[i]) / (angles[j] - angles[i]))  # kN mm = N m
-    return out
+    return out, math.degrees(angles[-1])
 
 
-def turn(fabrica, folder, name, joint, degrees):
+def turn(fabrica, folder, name, degrees):
     """Torques [N m] over fifths of the way, how far the joint came apart [mm], and why the run ended early."""
-    held, turned, others, axis, sign = joint[:5]
-    radians = sign * math.radians(degrees)
+    row = JOINTS[name]
+    held, turned, others = bones_of(row["joint"])
+    centre = [float(TREE[row["joint"]][x]) for x in "xyz"]
+    axis = [float(row["a" + x]) for x in "xyz"]
+    frame = frame_of(held[0])
+    across = min(([1, 0, 0], [0, 1, 0], [0, 0, 1]), key=lambda d: abs(sum(a * b for a, b in zip(in_frame(frame, axis), d))))
+    laid = at_frame(frame, [c - 100 * a for c, a in zip(centre, axis)]), across
     slower = 2 if others else 1
     start = START * slower
     time = max(abs(degrees) / RATE * slower + start / 2 + 2, start + 0.5)
-    rate = radians / (time - start / 2)
+    rate = math.radians(degrees) / (time - start / 2)
     timing = f"end_time     = {time:.2f}\noutput_every = {time / 200:.4f}\nstates_every = {time / 20:.4f}"
     support = ('free   = ["x", "y", "z"]\n'
-               f'motion = {{ along = "{axis}", velocity = [[0, 0], [{start}, {rate:.6f}], [{time:.2f}, {rate:.6f}]] }}')
+               f'motion = {{ along = "rx", velocity = [[0, 0], [{start}, {rate:.6f}], [{time:.2f}, {rate:.6f}]] }}')
+
+    def angle(t):
+        t = min(t, time)
+        return abs(rate) * (t * t / (2 * start) if t < start else t - start / 2)
+
     stem = folder / f"{name.replace(' ', '_')}_{degrees:+g}"
-    apart, failed = joint_rig.run(fabrica, stem, joint_rig.rig(timing, held, turned, others, "turned", support, centre(joint[5])))
-    return (None if failed else torques(stem, radians, time, start)), apart, failed
+    text = joint_rig.rig(timing, sided(held), sided(turned), sided(others), "turned", support, at_frame(frame_of(turned[0]), centre), laid)
+    apart, failed = joint_rig.run(fabrica, stem, text, "standard" if row["joint"] in AT_STANDARD else "coarse")
+    if not (stem / "csv/glstat.csv").exists():
+        return [], apart, failed
+    curve, reached = torques(stem, angle)
+    return curve, apart, f"{reached:.1f} degrees: {failed}" if failed else ""
 
 
 def main():
@@ -100,12 +134,12 @@ def main():
     print("| joint | to [degrees] | torque over fifths of the way [N m] | apart [mm] | remark |")
     print("| --- | --- | --- | --- | --- |")
     for name in a.joints:
-        for degrees in limits(*JOINTS[name][5:]):
+        for degrees in (float(JOINTS[name][end]) for end in ("low", "high")):
             if degrees == 0:
                 continue
-            torque, apart, failed = turn(a.fabrica, a.out, name, JOINTS[name], degrees)
+            torque, apart, failed = turn(a.fabrica, a.out, name, degrees)
             bad += bool(failed) or not apart <= 3
-            curve = "-" if torque is None else " ".join(f"{t:.2f}" for t in torque)
+            curve = " ".join(f"{t:.2f}" for t in torque) or "-"
             print(f"| {name} | {degrees:g} | {curve} | {'-' if apart is None else f'{apart:.2f}'} | {failed} |", flush=True)
     return 1 if bad else 0
 
