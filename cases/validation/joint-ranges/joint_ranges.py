@@ -32,7 +32,7 @@ BONES = {
     "knee": (["femur"], ["tibia"], ["fibula", "patella"]),
     "ankle": (["tibia"], ["talus"], ["fibula", "calcaneus"]),
     "subtalar": (["talus", "tibia", "fibula"], ["calcaneus"], []),
-    "clavicle": (["manubrium", "rib1"], ["clavicle"], []),
+    "clavicle": (["manubrium", "costal_cartilage1", "left.clavicle"], ["clavicle"], []),
     "elbow": (["humerus"], ["ulna"], ["radius"]),
     "forearm": (["ulna", "humerus"], ["radius"], []),
     "wrist": (["radius", "ulna"], CARPALS[4:], CARPALS[:4]),
@@ -61,7 +61,7 @@ JOINTS = {f"{row['joint']} {row['coordinate']}": row for row in rows_of("joint_a
 
 
 def sided(bones):
-    return [bone if bone in MIDLINE else "right." + bone for bone in bones]
+    return [bone if bone in MIDLINE or bone.startswith("left.") else "right." + bone for bone in bones]
 
 
 def bones_of(joint):
