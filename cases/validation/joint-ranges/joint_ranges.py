@@ -11,7 +11,8 @@ and the kinetic energy T:
 
     M = d(W - T) / d(angle)
 
-as means over fifths of the range, against the motion where positive. Exit status 1 if a run does not reach its end or a joint comes
+as means over fifths of the range, against the motion where positive. Shift: the farthest that the joint's centre went in the turned
+bone, so that a head that leaves its socket is seen where its surface stays in touch. Exit status 1 if a run does not reach its end or a joint comes
 apart by more than 3 mm.
 """
 import csv
@@ -98,8 +99,14 @@ def torques(folder, angle):
     return out, math.degrees(angles[-1])
 
 
+def shift(folder, pot):
+    """The farthest that the pivot of a pot went [mm]."""
+    rows = joint_rig.histories(folder / "csv/rbdout.csv")
+    return max(math.hypot(*(float(row[f"global_d{x}:{8000000 + pot}"]) for x in "xyz")) for row in rows)
+
+
 def turn(fabrica, folder, name, degrees):
-    """Torques [N m] over fifths of the way, how far the joint came apart [mm], and why the run ended early."""
+    """Torques [N m] over fifths of the way, how far the joint came apart and shifted [mm], and why the run ended early."""
     row = JOINTS[name]
     held, turned, others = bones_of(row["joint"])
     centre = [float(TREE[row["joint"]][x]) for x in "xyz"]
@@ -123,24 +130,24 @@ def turn(fabrica, folder, name, degrees):
     text = joint_rig.rig(timing, sided(held), sided(turned), sided(others), "turned", support, at_frame(frame_of(turned[0]), centre), laid)
     apart, failed = joint_rig.run(fabrica, stem, text, "standard" if row["joint"] in AT_STANDARD else "coarse")
     if not (stem / "csv/glstat.csv").exists():
-        return [], apart, failed
+        return [], apart, None, failed
     curve, reached = torques(stem, angle)
-    return curve, apart, f"{reached:.1f} degrees: {failed}" if failed else ""
+    return curve, apart, shift(stem, len(held) + 1), f"{reached:.1f} degrees: {failed}" if failed else ""
 
 
 def main():
     a = joint_rig.arguments(__doc__, JOINTS)[1]()
     bad = 0
-    print("| joint | to [degrees] | torque over fifths of the way [N m] | apart [mm] | remark |")
-    print("| --- | --- | --- | --- | --- |")
+    print("| joint | to [degrees] | torque over fifths of the way [N m] | apart [mm] | shift [mm] | remark |")
+    print("| --- | --- | --- | --- | --- | --- |")
     for name in a.joints:
         for degrees in (float(JOINTS[name][end]) for end in ("low", "high")):
             if degrees == 0:
                 continue
-            torque, apart, failed = turn(a.fabrica, a.out, name, degrees)
+            torque, apart, moved, failed = turn(a.fabrica, a.out, name, degrees)
             bad += bool(failed) or not apart <= 3
-            curve = " ".join(f"{t:.2f}" for t in torque) or "-"
-            print(f"| {name} | {degrees:g} | {curve} | {'-' if apart is None else f'{apart:.2f}'} | {failed} |", flush=True)
+            lengths = " | ".join("-" if x is None else f"{x:.2f}" for x in (apart, moved))
+            print(f"| {name} | {degrees:g} | {' '.join(f'{t:.2f}' for t in torque) or '-'} | {lengths} | {failed} |", flush=True)
     return 1 if bad else 0
 
 
