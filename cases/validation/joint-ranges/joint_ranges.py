@@ -6,8 +6,8 @@ joint_ranges.py FABRICA OUT [JOINT ...]
 Joints are the rows of data/anatomy/joint_axes.csv, named as in "L3 flexion"; JOINT is a regular expression of whole names. Each is
 made of its bones alone in a test rig: bones are held, others turned about the centre of the joint (data/anatomy/joint_tree.csv) and
 about its axis, along which the rig is laid, at a steady rate after a start of 5 ms; the turned may shift freely. The mass of a bone
-stands at that centre: swung about it, it would load the joint. Torque on the turned bones, from the work W of the motion
-and the kinetic energy T:
+stands at that centre: swung about it, it would load the joint. Torque on the turned bones, from the work W of the motion and the
+kinetic energy T:
 
     M = d(W - T) / d(angle)
 
