@@ -12,8 +12,8 @@ kinetic energy T:
     M = d(W - T) / d(angle)
 
 as means over fifths of the range, against the motion where positive. Shift: the farthest that the joint's centre went in the turned
-bone, so that a head that leaves its socket is seen where its surface stays in touch. Exit status 1 if a run does not reach its end or a joint comes
-apart by more than 3 mm.
+bone; it shows a head that leaves its socket while the surfaces stay in touch. Exit status 1 if a run does not reach its end or a
+joint comes apart by more than 3 mm.
 """
 import csv
 import math
