@@ -85,8 +85,8 @@ class Assembly {
         .set("hgid", cortex_hourglass)
         .set("ihq", 4)
         .set("qm", 0.05);
-    // nearly incompressible: IHQ 5 would take its stiffness from the bulk modulus, 50 times that of
-    // shear; bending and not the control should hold a nucleus
+    // nearly incompressible: IHQ 5 would take its stiffness from the bulk modulus, hundreds of
+    // times that of shear, and hold a nucleus that its law lets bend
     titled(builder_, "HOURGLASS", "assumed strain for discs")
         .set("hgid", disc_hourglass)
         .set("ihq", 6)
