@@ -239,7 +239,7 @@ void DiscMaker::fibres(int number) {
   builder.piece.region = upper.region;
   builder.piece.kind = PieceKind::spring;
   LigamentStiffness law;  // of 1 kN/mm behind the toe: the scale of a line is its stiffness
-  law.length = length, law.k1 = 1;
+  law.k1 = 1;
   law.toe = ((1 - t) * toe_inner + t * toe_outer) * length;
   law.toe_force = law.toe / ((1 - t) * exponent_inner + t * exponent_outer);
   builder.piece.law = ligament_curve(

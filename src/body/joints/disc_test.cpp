@@ -22,13 +22,6 @@ const Piece& piece(const Body& body, const std::string& name) {
   return *at;
 }
 
-// where a node of a piece is, its own or of the piece before
-Point place(const Body& body, const PieceNode& n) {
-  if (n.piece >= 0)
-    return place(body, body.between.pieces[std::size_t(n.piece)].nodes[std::size_t(n.node)]);
-  return n.x;
-}
-
 Body lumbar_pair() {
   BodyOptions options;
   options.only = {"L3", "L4"};
@@ -46,8 +39,7 @@ TEST_CASE("the fibres of a disc have their volume, modulus and direction") {
     Point up{0, 0, 0};
     for (const auto& brick : nucleus.bricks)
       for (std::size_t i = 0; i < 4; ++i)
-        up += place(body, nucleus.nodes[std::size_t(brick[i + 4])]) -
-              place(body, nucleus.nodes[std::size_t(brick[i])]);
+        up += nucleus.nodes[std::size_t(brick[i + 4])].x - nucleus.nodes[std::size_t(brick[i])].x;
     return (1 / norm(up)) * up;
   }();
   const double modulus[] = {0.360, 0.550}, wanted[] = {45, 30};
@@ -57,16 +49,15 @@ TEST_CASE("the fibres of a disc have their volume, modulus and direction") {
     double volume = 0;
     for (const auto& brick : annulus.bricks) {
       Corners corners;
-      for (std::size_t i = 0; i < 8; ++i)
-        corners[i] = place(body, annulus.nodes[std::size_t(brick[i])]);
+      for (std::size_t i = 0; i < 8; ++i) corners[i] = annulus.nodes[std::size_t(brick[i])].x;
       volume += volume_of(corners);
     }
     const Piece& fibres = piece(body, "abdomen.mid.disc_L3_L4.fibres" + number);
     double sum = 0;
     std::vector<double> miss;
     for (std::size_t i = 0; i < fibres.lines.size(); ++i) {
-      const Point d = place(body, fibres.nodes[std::size_t(fibres.lines[i][0])]) -
-                      place(body, fibres.nodes[std::size_t(fibres.lines[i][1])]);
+      const Point d = fibres.nodes[std::size_t(fibres.lines[i][0])].x -
+                      fibres.nodes[std::size_t(fibres.lines[i][1])].x;
       sum += fibres.line_scale[i] * dot(d, d);
       miss.push_back(std::abs(
           std::asin(std::abs(dot(d, normal)) / norm(d)) * 180 / std::numbers::pi - wanted[ring]));
@@ -84,8 +75,7 @@ TEST_CASE("the fibres of a disc have a toe") {
   const Piece& fibres = piece(body, "abdomen.mid.disc_L3_L4.fibres2");
   double length = 0;
   for (const auto& line : fibres.lines)
-    length += norm(place(body, fibres.nodes[std::size_t(line[0])]) -
-                   place(body, fibres.nodes[std::size_t(line[1])])) /
+    length += norm(fibres.nodes[std::size_t(line[0])].x - fibres.nodes[std::size_t(line[1])].x) /
               double(fibres.lines.size());
   const auto& curve = fibres.law.curve;
   const auto& toe = curve[curve.size() - 2];
