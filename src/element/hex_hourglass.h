@@ -150,11 +150,10 @@ FABRICA_FN void hexhourglass_forces(const ElementParameters& p, const Point<L>& 
                                     const Mat3<L>& gradient, const Mat3<L>& middle, StateView<L> s,
                                     HexHourglass<L>& hg, Totals<L>& totals) {
   L work = L(0.0);
+  if (p.hourglass >= 4) hg.to_mid_step(gradient, middle, dt);
   if (p.hourglass == 6) {
-    hg.to_mid_step(gradient, middle, dt);
     work = hexhourglass_assumed_strain(p, point, dt, c.x, s, hg);
   } else if (p.hourglass >= 4) {
-    hg.to_mid_step(gradient, middle, dt);
     Vec3<L> old[4];
     for (int a = 0; a < 4; ++a) old[a] = s.template get<Vec3<L>>(3 * a);
     hexhourglass_stiffness(p, point, dt, density, g, middle, s, hg);
