@@ -199,14 +199,22 @@ bool RigidWalls::find_behind(const Wall& wall, const WallGeometry& g, const Stat
   return true;
 }
 
+// Chunks of nodes that may have come to the wall after a way of `reach`: what is far costs one
+// subtraction, and a loop over what is near is none for other threads where that is one chunk.
+void RigidWalls::find_near(Side& side, double reach) {
+  near_.clear();
+  for (std::size_t c = 0; c < side.clearance.size(); ++c)
+    if (!((side.clearance[c] -= reach) > 0)) near_.push_back(int(c));
+}
+
 void RigidWalls::detect(Wall& wall, const WallGeometry& g, State& state, Team& team, double speed) {
   const double reach = state.dt * (speed + norm(wall.velocity));
   Side& side = wall.free;
-  team.for_each(int(side.clearance.size()), [&](int c, int) {
+  find_near(side, reach);
+  team.for_each(int(near_.size()), [&](int k, int) {
+    const int c = near_[k];
     hits_[c].clear();
     sums_[c] = {};
-    side.clearance[c] -= reach;
-    if (side.clearance[c] > 0) return;
     double clearance = 1e300;
     const int end = std::min(int(side.nodes.size()), (c + 1) * chunk_nodes);
     for (int i = c * chunk_nodes; i < end; ++i) {
@@ -232,8 +240,8 @@ void RigidWalls::push(Wall& wall, State& state, Team& team, double old_speed) {
   const RigidWall& w = model_.rigid_walls[wall.index];
   // a heavy wall took up momentum: all touching nodes get its new velocity
   const double gain = dot(wall.velocity, wall.geometry.normal) - old_speed;
-  const int chunks = int(wall.free.clearance.size());
-  team.for_each(chunks, [&](int c, int) {
+  team.for_each(int(near_.size()), [&](int k, int) {
+    const int c = near_[k];
     Sums& s = sums_[c];
     for (const Hit& h : hits_[c]) {
       NodeMotion& node = state.nodes[h.node];
@@ -250,7 +258,7 @@ void RigidWalls::push(Wall& wall, State& state, Team& team, double old_speed) {
     }
   });
   const double rate = 1 / state.mean_dt();
-  for (int c = 0; c < chunks; ++c) {
+  for (const int c : near_) {
     wall.force += rate * sums_[c].impulse;
     state.energy.rigid_wall -= 0.5 * state.dt_previous * rate * sums_[c].before;
     wall.pending -= 0.5 * state.dt * rate * sums_[c].after;
@@ -275,11 +283,10 @@ void RigidWalls::apply(State& state, Team& team, double max_speed) {
       const double old_speed = dot(wall.velocity, n);
       if (w.moving) {
         double mass = w.mass, momentum = w.mass * old_speed;
-        for (std::size_t c = 0; c < wall.free.clearance.size(); ++c)
-          mass += sums_[c].mass, momentum += sums_[c].momentum;
+        for (const int c : near_) mass += sums_[c].mass, momentum += sums_[c].momentum;
         wall.velocity = (momentum / mass) * n;
         // every touching node takes exactly the common velocity
-        for (std::size_t c = 0; c < wall.free.clearance.size(); ++c)
+        for (const int c : near_)
           for (Hit& h : hits_[c]) h.added = old_speed - dot(state.nodes[h.node].v, n);
       }
       push(wall, state, team, old_speed);
@@ -298,11 +305,11 @@ void RigidWalls::penalty(Wall& wall, State& state, Team& team, double speed) {
   const double reach = state.dt_previous * (speed + norm(wall.velocity));
   const WallGeometry g = now(wall);
   Side& side = wall.rigid;
-  team.for_each(int(side.clearance.size()), [&](int c, int) {
+  find_near(side, reach);
+  team.for_each(int(near_.size()), [&](int k, int) {
+    const int c = near_[k];
     Sums& s = sums_[c];
     s = {};
-    side.clearance[c] -= reach;
-    if (side.clearance[c] > 0) return;
     double clearance = 1e300;
     const int end = std::min(int(side.nodes.size()), (c + 1) * chunk_nodes);
     for (int i = c * chunk_nodes; i < end; ++i) {
@@ -326,7 +333,7 @@ void RigidWalls::penalty(Wall& wall, State& state, Team& team, double speed) {
     side.clearance[c] = clearance - 1e-9 * std::abs(clearance);
   });
   wall.penalty = {};
-  for (std::size_t c = 0; c < side.clearance.size(); ++c) {
+  for (const int c : near_) {
     wall.penalty += sums_[c].impulse;
     state.energy.rigid_wall -= 0.5 * state.dt_previous * sums_[c].before;
   }

@@ -90,6 +90,7 @@ class RigidWalls {
                   Hit& hit) const;
   bool find_behind(const Wall& wall, const WallGeometry& g, const State& state, int node,
                    Hit& hit) const;
+  void find_near(Side& side, double reach);
   void detect(Wall& wall, const WallGeometry& g, State& state, Team& team, double speed);
   void push(Wall& wall, State& state, Team& team, double old_speed);
   void penalty(Wall& wall, State& state, Team& team, double speed);
@@ -99,6 +100,7 @@ class RigidWalls {
   std::vector<Wall> walls_;
   std::vector<std::vector<Hit>> hits_;  // per chunk
   std::vector<Sums> sums_;
+  std::vector<int> near_;  // chunks of the wall and side at hand
 };
 
 }  // namespace fabrica
