@@ -153,14 +153,19 @@ Tiles::Tiles(const Model& model, Diagnostics& diagnostics) {
         t.connectivity = connectivity.size();
         const int blocks = (t.count + block_size - 1) / block_size, N = group.corners;
         connectivity.resize(connectivity.size() + std::size_t(blocks) * N * block_size);
+        // In the deck's order, so that what another thread's nodes want of this tile lies together.
+        for (int i = 0; i < t.count; ++i)
+          for (int a = 0; a < N; ++a) {
+            const int n = group.members[order[first + i]].node[a];
+            if (local[n] < 0) local[n] = 0, node.push_back(n);
+          }
+        std::sort(node.begin() + t.node_first, node.end());
+        for (int k = t.node_first; k < int(node.size()); ++k) local[node[k]] = k - t.node_first;
         for (int i = 0; i < blocks * block_size; ++i) {
           const Member& member = group.members[order[first + std::min(i, t.count - 1)]];
-          for (int a = 0; a < N; ++a) {
-            int& l = local[member.node[a]];
-            if (l < 0) l = int(node.size()) - t.node_first, node.push_back(member.node[a]);
+          for (int a = 0; a < N; ++a)
             connectivity[t.connectivity + (std::size_t(i / block_size) * N + a) * block_size +
-                         i % block_size] = std::uint16_t(l);
-          }
+                         i % block_size] = std::uint16_t(local[member.node[a]]);
           if (i < t.count) {
             places[member.element] = {int(tiles.size()), i};
             element.push_back(member.element);
