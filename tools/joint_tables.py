@@ -53,8 +53,12 @@ BROAD = {"ALL": (3, 14), "PLL": (3, 10), "LF": (2, 8), "ISL": (2, 6), "SSL": (1,
          "coracohumeral": (2, 12), "MGHL": (2, 8), "IGHL": (2, 10), "SC": (2, 8), "costoclavicular": (2, 10),
          "tectorial": (3, 10), "anterior": (3, 14), "posterior": (3, 14), "costovertebral": (3, 6),
          "costotransverse": (2, 6), "interosseous": (3, 12)}
-# mean height by level [mm], literature
-HEIGHTS = {"L1": 10.0, "L2": 11.6, "L3": 12.5, "L4": 13.8, "L5": 13.0}
+# Heights in front and behind [mm], vernier calipers on ten cadavers, by upper vertebra; L5-S1 lacks the one behind. Others:
+# 9.3, 10.9, 12.4 in front at L3-L4 to L5-S1 (MRI, 300 patients, Onishi 2019); nucleus at most 8.6 high, SD 1.3, at L4-L5
+# (MRI, 41 Chinese, Medicine (Baltimore) 2014, abstract 00005792-201412030-00064). Radiographs of the cadavers' study magnify:
+# 14.3 and 9.0 at L3-L4. An earlier table had 12.5 in the middle of L3-L4 (MRI, 14 Iranians, anatomyjournal.ir A-10-159-1).
+HEIGHTS = {"L1": (7.92, 4.62), "L2": (9.14, 4.93), "L3": (10.61, 5.87), "L4": (12.57, 6.55)}
+HEIGHTS_SOURCE = "mean of {:g} in front and {:g} behind, ten cadavers (Agichani, Joshi and Joshi, jebmh.com 78454, abstract)"
 # rows that the full table lacks: without them the hyoid bone would hang on nothing
 ADDED = [
     ["stylohyoid", "head", "R", "skull", "head", 8.0, -38.0, -10.0, "hyoid", "head", 28.0, -12.0, -42.0, "points", 55, 5,
@@ -151,7 +155,9 @@ def discs(folder):
     for row in table(folder / "bones/discs.csv"):
         upper, lower = row["disc"].split("_")
         if upper in HEIGHTS:
-            height, source = HEIGHTS[upper], "anatomyjournal.ir A-10-159-1"
+            height, source = round(sum(HEIGHTS[upper]) / 2, 1), HEIGHTS_SOURCE.format(*HEIGHTS[upper])
+        elif upper == "L5":
+            height, source = float(row["mean_height_mm"]), "as measured; in front 12.4 (Onishi 2019), 12.6 (Agichani)"
         elif upper.startswith("C") and upper != "C7":
             height, source = 5.0, "e-neurospine 444: anterior 4.1, middle 5.8"
         else:

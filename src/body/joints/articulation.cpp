@@ -44,6 +44,7 @@ std::vector<Articulation> articulations(const std::vector<PlacedBone>& bones) {
                        kind_of(table, row),
                        table.number(row, "cartilage1"),
                        table.number(row, "cartilage2"),
+                       table.number(row, "thickest"),
                        table.number(row, "reach"),
                        int(table.number(row, "strands")),
                        1e-3 * table.number(row, "stiffness"),

@@ -18,6 +18,7 @@ struct Articulation {
   int a, b;          // indices of the bones
   ArticulationKind kind;
   double cartilage_a, cartilage_b;  // [mm]
+  double thickest;                  // [mm] of a layer that fills the space of the joint; 0: none
   double reach;                     // [mm] faces this near the other bone belong to the joint
   int strands;                      // of the capsule
   double stiffness;                 // [kN/mm] of the capsule

@@ -10,6 +10,7 @@
 
 #include "body/joints/bone_surfaces.h"
 #include "body/joints/joint_law.h"
+#include "body/joints/layer.h"
 #include "body/joints/ligaments.h"
 #include "body/joints/meniscus.h"
 #include "body/joints/piece_builder.h"
@@ -115,26 +116,6 @@ std::array<PieceNode, 4> ArticulationMaker::quad_of(int index, int quad) const {
   return corners;
 }
 
-// Sharp edges of coarse bones spread over the faces around them: half of each normal is the mean of
-// its neighbours', twice.
-void smooth_normals(const PlacedBone& bone, const Patch& patch, std::map<int, Point>& normals) {
-  for (int pass = 0; pass < 2; ++pass) {
-    std::map<int, Point> sums;
-    for (int q : patch.quads) {
-      const auto& s = bone.mesh.surface[std::size_t(q)];
-      for (std::size_t i = 0; i < 4; ++i)
-        for (std::size_t k : {(i + 1) % 4, (i + 3) % 4}) {
-          const Point& n = normals.at(s[k]);
-          sums.try_emplace(s[i], Point{0, 0, 0}).first->second += (1 / norm(n)) * n;
-        }
-    }
-    for (auto& [node, normal] : normals) {
-      const Point& sum = sums.at(node);
-      if (norm(sum) > 1e-6) normal = (1 / norm(normal)) * normal + (1 / norm(sum)) * sum;
-    }
-  }
-}
-
 // One layer of bricks on the patch, towards the other bone; gives its free faces.
 std::vector<std::array<PieceNode, 4>> ArticulationMaker::layer(const Articulation& joint, int index,
                                                                int other, const Patch& patch,
@@ -145,41 +126,36 @@ std::vector<std::array<PieceNode, 4>> ArticulationMaker::layer(const Articulatio
     return faces;
   }
   const PlacedBone& here = bone(index);
-  std::map<int, Point> normals;
-  for (int q : patch.quads) {
-    const auto& s = here.mesh.surface[std::size_t(q)];
-    const Point n = quad_normal(here.nodes[std::size_t(s[0])], here.nodes[std::size_t(s[1])],
-                                here.nodes[std::size_t(s[2])], here.nodes[std::size_t(s[3])]);
-    for (int corner : s) normals.try_emplace(corner, Point{0, 0, 0}).first->second += n;
-  }
-  smooth_normals(here, patch, normals);
-  PieceBuilder builder(bones_);
-  std::map<int, Point> top;
-  std::map<int, int> top_node;  // made when a brick needs it
+  LayerPlan plan{layer_normals(here.nodes, here.mesh.surface, patch.quads), {}};
   std::optional<MeniscusRoom> menisci;
   if (joint.kind == ArticulationKind::meniscal) menisci.emplace(bone(joint.a), bone(joint.b));
-  std::set<int> crowded;  // nodes without room for two layers: no cartilage, no contact there
-  for (auto& [node, normal] : normals) {
+  std::map<int, double> distances;
+  for (const auto& [node, normal] : plan.normal) {
     const Point& p = here.nodes[std::size_t(node)];
-    normal = (1 / norm(normal)) * normal;
     const SurfacePoint there = surface_[other].nearest(p, 4 * joint.reach);
     const double distance = there.quad < 0 ? 2 * joint.reach : there.distance;
+    distances[node] = distance;
     const double room = joint.kind == ArticulationKind::grown ? distance - tied_gap
                                                               : 0.5 * (distance - contact_gap);
-    if (room < thinnest) {
-      crowded.insert(node);
-      continue;
-    }
+    if (room < thinnest) continue;  // no room for two layers: no cartilage, no contact there
     const double meniscus = menisci ? menisci->height(p) : 0;
     const double beside =
         meniscus > 0 ? std::max(room - 0.5 * meniscus, under_meniscus) : cartilage;
-    const double thickness = std::clamp(std::min(room, beside), thinnest, cartilage);
-    gap = std::min(gap, distance - 2 * thickness);
-    top[node] = p + thickness * normal;
+    plan.thickness[node] = std::clamp(std::min(room, beside), thinnest, cartilage);
+  }
+  if (joint.thickest > cartilage)
+    fill_room(here.nodes, here.mesh.surface, patch.quads, surface_[other], contact_gap,
+              joint.thickest, plan);
+  PieceBuilder builder(bones_);
+  std::map<int, Point> top;
+  std::map<int, int> top_node;  // made when a brick needs it
+  for (const auto& [node, thickness] : plan.thickness) {
+    gap = std::min(gap, distances.at(node) - 2 * thickness);
+    top[node] = here.nodes[std::size_t(node)] + thickness * plan.normal.at(node);
   }
   for (int q : patch.quads) {
     const auto& s = here.mesh.surface[std::size_t(q)];
-    if (std::any_of(s.begin(), s.end(), [&](int n) { return crowded.count(n) > 0; })) continue;
+    if (std::any_of(s.begin(), s.end(), [&](int n) { return !top.count(n); })) continue;
     Corners corners;
     for (std::size_t i = 0; i < 4; ++i)
       corners[i] = here.nodes[std::size_t(s[i])], corners[i + 4] = top[s[i]];

@@ -21,7 +21,7 @@ namespace fabrica::body {
 namespace {
 
 constexpr double nucleus_radius = 0.65;  // of the section: 42 % of its area
-constexpr double most_shift = 3.5;       // [mm] of an endplate; L3-L4 needs 3.45
+constexpr double most_shift = 3.5;       // [mm] of an endplate; L3-L4 needs 1.3
 
 // E [MPa] of the fibres from the outermost ring inwards (s41598-025-22755-z Table 1: 550 to 360
 // MPa) and their share of the annulus (Shirazi-Adl 1986: 16 %)
