@@ -59,6 +59,10 @@ BROAD = {"ALL": (3, 14), "PLL": (3, 10), "LF": (2, 8), "ISL": (2, 6), "SSL": (1,
 # 14.3 and 9.0 at L3-L4. An earlier table had 12.5 in the middle of L3-L4 (MRI, 14 Iranians, anatomyjournal.ir A-10-159-1).
 HEIGHTS = {"L1": (7.92, 4.62), "L2": (9.14, 4.93), "L3": (10.61, 5.87), "L4": (12.57, 6.55)}
 HEIGHTS_SOURCE = "mean of {:g} in front and {:g} behind, ten cadavers (Agichani, Joshi and Joshi, jebmh.com 78454, abstract)"
+# Cervical discs keep the height that they were measured with: it lies among the sources. In front and behind 4.1 and 3.0 (C2-C3),
+# 4.3, 2.8, 4.0, 2.5, 3.6, 2.9, 3.6, 2.5 (C6-C7) in 20 sectioned spines (Lu 1999); in front, in the middle and behind 2.6, 4.1 and
+# 1.8 in CT of 1000 men and women (PMC11225399, abstract), over all levels; 4.1 and 5.8 in radiographs of 20 men (e-neurospine 444).
+CERVICAL_HEIGHT = "as measured; 4.1 to 3.6 in front, 3.0 to 2.5 behind (20 cadavers, Lu 1999, abstract); PMC11225399; e-neurospine 444"
 # rows that the full table lacks: without them the hyoid bone would hang on nothing
 ADDED = [
     ["stylohyoid", "head", "R", "skull", "head", 8.0, -38.0, -10.0, "hyoid", "head", 28.0, -12.0, -42.0, "points", 55, 5,
@@ -158,8 +162,8 @@ def discs(folder):
             height, source = round(sum(HEIGHTS[upper]) / 2, 1), HEIGHTS_SOURCE.format(*HEIGHTS[upper])
         elif upper == "L5":
             height, source = float(row["mean_height_mm"]), "as measured; in front 12.4 (Onishi 2019), 12.6 (Agichani)"
-        elif upper.startswith("C") and upper != "C7":
-            height, source = 5.0, "e-neurospine 444: anterior 4.1, middle 5.8"
+        elif upper.startswith("C"):
+            height, source = float(row["mean_height_mm"]), CERVICAL_HEIGHT
         else:
             height, source = float(row["mean_height_mm"]), "as measured; Fletcher 2015: 2.7 (T4-5) to 5.4 (T10-11)"
         yield [row["disc"], upper, "sacrum" if lower == "S1" else lower,
