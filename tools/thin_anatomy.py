@@ -14,7 +14,8 @@ ends, in the rib's plane, each point moves along h by
 
     (k - 1) w(s) h,   k = (rise / span of the table) span / max h,   w = 0 up to the tubercle, 1 from there on smoothly,
 
-sections turn with the tangent, ends stay where they are; volume and box in index.csv follow.
+sections turn with the tangent, ends stay where they are; volume and box in index.csv follow. Shafts of
+data/anatomy/shaft_sections.csv get the size of the mean man (shaft_sections.py), and the volume in index.csv follows.
 """
 import csv
 import math
@@ -22,6 +23,7 @@ import pathlib
 import re
 import sys
 
+import shaft_sections
 import slice_choice
 
 HARMONICS = 6
@@ -93,15 +95,19 @@ def slices_kept(bone, rows, heights):
     return keep
 
 
-def thin_stack(source, target):
+def thin_stack(source, target, box):
     comments, rows = read(source)
+    bone = source.name.removesuffix("_stack.csv")
+    sized = shaft_sections.sized(bone, rows, *box)
+    said = "" if sized is rows else "# shaft of the size of data/anatomy/shaft_sections.csv\n"
+    rows = sized
     heights = sorted({float(row["s_mm"]) for row in rows})
-    keep = {heights[i] for i in slices_kept(source.name.removesuffix("_stack.csv"), rows, heights)}
+    keep = {heights[i] for i in slices_kept(bone, rows, heights)}
     orders = range(-HARMONICS, HARMONICS + 1)
     columns = ["height", "sign"] + [f"{part}{k}" for k in orders for part in ("re", "im")]
     out = [[number(row["s_mm"]), int(row["sign"])] + [number(row[f"{part}{k}"]) for k in orders for part in ("re", "im")]
            for row in rows if float(row["s_mm"]) in keep]
-    write(target, "# closed contours z(t) = sum_k (re_k + i im_k) exp(i k t) of parallel slices [mm]; sign +1 outer, -1 hole\n",
+    write(target, said + "# closed contours z(t) = sum_k (re_k + i im_k) exp(i k t) of parallel slices [mm]; sign +1 outer, -1 hole\n",
           columns, out)
     return vector(comments[0], "normal n"), vector(comments[0], "e1")
 
@@ -281,6 +287,11 @@ def index(source, target, planes):
             row["volume_cm3"] = number(float(row["volume_cm3"]) * factor)
             for name, move in zip(("xmin", "ymin", "zmin", "xmax", "ymax", "zmax"), moves):
                 row[name] = number(float(row[name]) + move)
+        if shaft_sections.sections(row["bone"]):
+            _, slices = read(source.parent / f"{row['bone']}_stack.csv")
+            ends = float(row["zmin"]), float(row["zmax"])
+            factor = shaft_sections.volume(shaft_sections.sized(row["bone"], slices, *ends)) / shaft_sections.volume(slices)
+            row["volume_cm3"] = number(float(row["volume_cm3"]) * factor)
         n, e1 = planes.get(row["bone"], (["", "", ""], ["", "", ""]))
         out.append([row["bone"], row["frame"], row["volume_cm3"]] +
                    [row[c] for c in ("xmin", "ymin", "zmin", "xmax", "ymax", "zmax")] + n + e1)
@@ -294,8 +305,10 @@ def main():
     source, target = map(pathlib.Path, sys.argv[1:])
     target.mkdir(parents=True, exist_ok=True)
     planes = {}
+    boxes = {row["bone"]: (float(row["zmin"]), float(row["zmax"])) for row in read(source / "index.csv")[1]}
     for path in sorted(source.glob("*_stack.csv")):
-        planes[path.name.removesuffix("_stack.csv")] = thin_stack(path, target / path.name)
+        bone = path.name.removesuffix("_stack.csv")
+        planes[bone] = thin_stack(path, target / path.name, boxes[bone])
     for path in sorted(source.glob("*_loft.csv")):
         if LOFTS.fullmatch(path.name.removesuffix("_loft.csv")):
             thin_loft(path, target / path.name)
