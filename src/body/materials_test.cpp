@@ -88,3 +88,13 @@ TEST_CASE("the cortex of femur and tibia yields as its coupons at the rate of th
   CHECK(yield("femur_cortical") == doctest::Approx(0.118).epsilon(0.002));
   CHECK(yield("tibia_cortical") == doctest::Approx(0.114).epsilon(0.002));
 }
+
+// Vandenbulcke 2012 by VIVA+: 100 MPa, bent slowly; the rate effect is that of the other long
+// bones.
+TEST_CASE("the cortex of the humerus has its slow yield, and the rate effect of the tibia") {
+  Diagnostics diagnostics;
+  Builder builder(diagnostics), other(diagnostics);
+  const Card &law = law_of("humerus_cortical", builder), &tibia = law_of("tibia_cortical", other);
+  CHECK(law.real("sigy") == 0.1);
+  for (const char* name : {"c", "p", "vp"}) CHECK(law.real(name) == tibia.real(name));
+}
