@@ -11,6 +11,7 @@ namespace {
 ArticulationKind kind_of(const Table& table, int row) {
   const std::string& kind = table.text(row, "kind");
   if (kind == "sliding") return ArticulationKind::sliding;
+  if (kind == "pivot") return ArticulationKind::pivot;
   if (kind == "meniscal") return ArticulationKind::meniscal;
   if (kind == "facet") return ArticulationKind::facet;
   if (kind == "arch") return ArticulationKind::arch;
@@ -18,7 +19,15 @@ ArticulationKind kind_of(const Table& table, int row) {
   if (kind == "grown") return ArticulationKind::grown;
   if (kind == "symphysis") return ArticulationKind::symphysis;
   table.fail(row, "kind is \"" + kind +
-                      "\": one of sliding, meniscal, facet, arch, joined, grown, symphysis");
+                      "\": one of sliding, pivot, meniscal, facet, arch, joined, grown, symphysis");
+}
+
+BoneEnd end_of(const Table& table, int row) {
+  const std::string& end = table.text(row, "end");
+  if (end.empty()) return BoneEnd::any;
+  if (end == "upper") return BoneEnd::upper;
+  if (end == "lower") return BoneEnd::lower;
+  table.fail(row, "end is \"" + end + "\": upper, lower or nothing");
 }
 
 // a bone of one side, else of the midline; "_L" at the end of a name asks for the left one
@@ -46,6 +55,7 @@ std::vector<Articulation> articulations(const std::vector<PlacedBone>& bones) {
                        table.number(row, "cartilage2"),
                        table.number(row, "thickest"),
                        table.number(row, "reach"),
+                       end_of(table, row),
                        int(table.number(row, "strands")),
                        1e-3 * table.number(row, "stiffness"),
                        table.text(row, "source")};

@@ -8,9 +8,13 @@
 
 namespace fabrica::body {
 
-// meniscal: sliding, with menisci between that the second bone carries; grown: one layer that both
+// meniscal: sliding, with menisci between that the second bone carries; pivot: sliding, the head of
+// the first bone turns in a notch of the second and slides all around; grown: one layer that both
 // bones have grown to
-enum class ArticulationKind { sliding, meniscal, facet, arch, joined, grown, symphysis };
+enum class ArticulationKind { sliding, pivot, meniscal, facet, arch, joined, grown, symphysis };
+
+// quarter of the bone's length, in its frame
+enum class BoneEnd { any, upper, lower };
 
 struct Articulation {
   std::string name;  // of the row
@@ -20,8 +24,10 @@ struct Articulation {
   double cartilage_a, cartilage_b;  // [mm]
   double thickest;                  // [mm] of a layer that fills the space of the joint; 0: none
   double reach;                     // [mm] faces this near the other bone belong to the joint
-  int strands;                      // of the capsule
-  double stiffness;                 // [kN/mm] of the capsule
+  // of bone a that the joint is in: two bones may meet at both
+  BoneEnd end;
+  int strands;       // of the capsule
+  double stiffness;  // [kN/mm] of the capsule
   std::string source;
 };
 

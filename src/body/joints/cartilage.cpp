@@ -47,6 +47,7 @@ class ArticulationMaker {
  private:
   bool belongs(const Articulation& joint, int bone, const Point& centre) const;
   Patch patch(const Articulation& joint, int bone, int other, double reach, Facing facing);
+  void go_around(const Articulation& joint, Patch& patch) const;
   std::vector<std::array<PieceNode, 4>> layer(const Articulation& joint, int bone, int other,
                                               const Patch& patch, double cartilage,
                                               double& gap_left);
@@ -70,9 +71,21 @@ class ArticulationMaker {
   std::set<std::pair<int, int>> tied_;  // bone, node
 };
 
+// Is a place in the quarter of a bone's length at one of its ends?
+bool at_end(const PlacedBone& bone, BoneEnd end, const Point& place) {
+  double low = 1e30, high = -1e30;
+  for (const Point& n : bone.nodes) {
+    const double z = bone.placement.inverse(n).z;
+    low = std::min(low, z), high = std::max(high, z);
+  }
+  const double way = (bone.placement.inverse(place).z - low) / (high - low);
+  return end == BoneEnd::upper ? way > 0.75 : way < 0.25;
+}
+
 // Facets: behind the body and beside the midline; arches: behind the body. Other joints take every
-// face.
+// face, of one end where bones meet at both.
 bool ArticulationMaker::belongs(const Articulation& joint, int index, const Point& centre) const {
+  if (joint.end != BoneEnd::any && !at_end(bone(joint.a), joint.end, centre)) return false;
   if (joint.kind != ArticulationKind::facet && joint.kind != ArticulationKind::arch) return true;
   const Point local = bone(index).placement.inverse(centre);
   // the sacrum's frame is the pelvis: its facets lie behind the promontory
@@ -100,6 +113,25 @@ Patch ArticulationMaker::patch(const Articulation& joint, int index, int other, 
     found.gap = std::min(found.gap, there.distance);
   }
   return found;
+}
+
+// Adds to the faces of a head that look at its notch those all around it at their level: turned, it
+// shows them.
+void ArticulationMaker::go_around(const Articulation& joint, Patch& patch) const {
+  const PlacedBone& head = bone(joint.a);
+  const auto local = [&](int n) { return head.placement.inverse(head.nodes[std::size_t(n)]); };
+  double low = 1e30, high = -1e30;
+  for (int n : nodes_of(joint.a, patch))
+    low = std::min(low, local(n).z), high = std::max(high, local(n).z);
+  std::set<int> quads(patch.quads.begin(), patch.quads.end());
+  for (std::size_t q = 0; q < head.mesh.surface.size(); ++q) {
+    const auto& s = head.mesh.surface[q];
+    const Point x[4] = {local(s[0]), local(s[1]), local(s[2]), local(s[3])};
+    const double level = 0.25 * (x[0].z + x[1].z + x[2].z + x[3].z);
+    if (level > low && level < high && std::abs(quad_normal(x[0], x[1], x[2], x[3]).z) < 0.5)
+      quads.insert(int(q));
+  }
+  patch.quads.assign(quads.begin(), quads.end());
 }
 
 std::vector<int> ArticulationMaker::nodes_of(int index, const Patch& patch) const {
@@ -393,6 +425,7 @@ ArticulationReport ArticulationMaker::add(const Articulation& joint) {
     return look(1, facing) || look(1.5, facing) || look(2, facing) || look(3, facing);
   };
   if (!found(Facing::quad) && (a.quads.empty() || b.quads.empty())) found(Facing::edge);
+  if (joint.kind == ArticulationKind::pivot && !a.quads.empty()) go_around(joint, a);
   report.faces_a = int(a.quads.size()), report.faces_b = int(b.quads.size());
   report.gap = std::min(a.gap, b.gap);
   if (a.quads.empty() || b.quads.empty()) {
