@@ -38,10 +38,15 @@ CERVICAL = {"ALL": (140.4, 1.79, 116.0), "PLL": (217.6, 0.79, 69.0), "LF": (117.
             "CL": (82.2, 1.33, 50.2), "ISL": (19.4, 3.02, 28.6)}
 CERVICAL_SOURCE = ("Mattucci and Cronin 2015 J Mech Behav Biomed Mater 41:251, averages at 0.5 1/s as in "
                    "github.com/IMMC-UWaterloo/ARCGen TestCase_MattucciLigaments.m")
-# N/mm of the three strands of the membrane of the forearm, by their place; the middle one is its tendinous part
-FOREARM = {"35": 28.0, "55": 138.0, "75": 28.0}
-FOREARM_SOURCE = ("138 +- 24 N/mm of the tendinous part: Pan 2009 Chin J Orthop 29:572 (abstract); it makes 71 % of the "
-                  "membrane: Hotchkiss 1989 J Hand Surg 14:256 (abstract), the rest halved")
+# Membrane of the forearm: strand, N/mm, its ends on the crests of radius and ulna, length [mm]. The central band goes from 53,
+# 58.5 and 64 % of the radius above the styloid to 29, 36.5 and 44 % of the ulna above its head, the accessory one from 37 to 23
+FOREARM = [("central_53", 46, (-0.87, 12.57, -113.13), (1.86, -6.73, -188.58), 51.4),
+           ("central_58", 46, (-0.20, 12.35, -100.26), (2.81, -6.63, -171.05), 46.6),
+           ("central_64", 46, (1.75, 11.93, -85.31), (0.78, -9.87, -149.29), 39.2),
+           ("accessory", 56, (-2.80, 13.92, -152.52), (2.51, -6.01, -205.14), 31.3)]
+FOREARM_SOURCE = ("138 +- 24 N/mm of the central band: Pan 2009 Chin J Orthop 29:572 (abstract); it makes 71 % of the "
+                  "membrane: Hotchkiss 1989 J Hand Surg 14:256 (abstract), the accessory band the rest; places: Noda 2009 J Hand Surg "
+                  "34A:415 (abstract), on the crests of our bones")
 # strands and breadth [mm] over which they spread
 BROAD = {"ALL": (3, 14), "PLL": (3, 10), "LF": (2, 8), "ISL": (2, 6), "SSL": (1, 0), "CL": (4, 10), "ITL": (1, 0),
          "SI": (3, 16), "sacrospinous": (3, 14), "sacrotuberous": (3, 16), "iliolumbar": (3, 12), "pubic": (3, 14),
@@ -79,6 +84,21 @@ ADDED += [[f"interosseous_membrane_leg_{z}", "leg", "R", "tibia", "tibia_R", 0.0
            round(5 - 0.03 * z, 1), round(-24 - 0.046 * z, 1), float(z), "points", 18, 16, 1050, "", "", "", "", 1, 0, "",
            "1170 MPa, 0.54 mm (VIVA+ v0.2.5, Minns-Hunter 1976), a strand for each 30 mm; places estimated", "read"]
           for z in range(60, 331, 30)]
+# The annular ligament winds around the head of the radius and the lateral collateral ligament goes to it: the radius turns
+# in both. They pull at its axis, 7 mm below the centre of the head: place [mm] in the radius, length [mm] from there
+HEAD = (0.06, 1.1, -6.94)
+WOUND = {"RCL": 31.9, "annular_anterior": 15.5}
+ADDED += [
+    ["annular_posterior", "elbow", "R", "ulna", "ulna_R", -5.0, -10.2, -31.0, "radius", "radius_R", *HEAD, "around", 13.6, 10,
+     30, "", "", "", "", 1, 0, "", "as annular_anterior; behind the radial notch of our ulna", "estimated"],
+    # the dorsal one is taut in pronation and at 90 % of its length in supination, as the body stands
+    *[[f"radioulnar_{name}", "wrist", "R", "radius", "radius_R", *start, "ulna", "ulna_R", 2.3, -2.65, -266.16, "points",
+       length, 15, 50, "", "", "", "", 1, 0, "", "stiffness as radiocarpal_palmar: material similar to the radiocarpal ligaments "
+       "(Schuind 1991 J Hand Surg 16A:1106, abstract, the lengths too); from the edge of the notch to the fovea", "estimated"]
+      for name, start, length in (("palmar", (11.97, 26.12, -238.16), 17.6), ("dorsal", (-5.6, 27.37, -238.45), 16.5))],
+    *[[f"interosseous_membrane_forearm_{name}", "elbow", "R", "radius", "radius_R", *start, "ulna", "ulna_R", *end, "points",
+       length, 20, k, "", "", "", "", 1, 0, "", FOREARM_SOURCE, "read"] for name, k, start, end, length in FOREARM],
+]
 SHORTEST = 4.0  # [mm] reference length of ligaments that the source drew shorter: fibres run along the joint, not across
 
 
@@ -106,8 +126,6 @@ def law(row, length):
         half = 0.5 if kind == "LF" else 1.0  # a row is one side
         k, toe, force = CERVICAL[kind]
         return half * k, "", "", toe, half * force, CERVICAL_SOURCE
-    if row["name"].startswith("interosseous_membrane_forearm"):
-        return FOREARM[row["name"][-2:]], "", "", "", "", FOREARM_SOURCE
     k = float(row["stiffness"] or 0)
     return (k / length if row["stiffness_unit"].startswith("N/strain") else k), "", "", "", "", source
 
@@ -127,6 +145,8 @@ def flexed(rows, row):
 def ligaments(folder):
     rows = table(folder / "joints_ligaments.csv")
     for row in rows:
+        if row["name"].startswith("interosseous_membrane_forearm"):
+            continue  # FOREARM
         length = max(float(row["length_stand_mm"]), SHORTEST)
         spinous = row["name"].split("_")[0] in ("ISL", "SSL") and row["bone1"] in FLEXION
         if spinous:
@@ -142,12 +162,12 @@ def ligaments(folder):
         attach = "facet" if row["name"].startswith("CL_") else "points"
         if row["name"] in ("achilles_tendon", "quadriceps_tendon_insertion"):
             attach, k1, source = "muscle", 10.0, "tendon in series with a passive muscle; estimated"
+        if row["name"] in WOUND:
+            attach, length, ends[3:] = "around", WOUND[row["name"]], HEAD
         if row["name"] == "inguinal":
             source += "; both ends on the hip bone"
         lumbar = row["stiffness_unit"] == "N/mm (phases)"
         area = f"{LUMBAR[row['name'].split('_')[0]][3]:g}" if lumbar else row["area_mm2"]
-        if source == FOREARM_SOURCE:
-            row["confidence"] = "stiffness read; places from memory"
         confidence = "read" if lumbar or source == CERVICAL_SOURCE else row["confidence"]
         yield [row["name"], row["region"], row["side"], row["bone1"], row["frame1"], *ends[:3], row["bone2"],
                row["frame2"], *ends[3:], attach, f"{length:g}", area,
@@ -185,7 +205,8 @@ def main():
     notice = ("# Attachments and sizes measured from BodyParts3D, (c) The Database Center for Life Science, CC BY-SA 4.0;"
               " changes: scaled per region, reduced to points. See LICENSE in data/anatomy.\n")
     write(target / "ligaments.csv", notice +
-          "# Ends in the frames of the bones [mm], right side or midline. length: reference, of strains. k1 to strain1, k2"
+          "# Ends in the frames of the bones [mm], right side or midline; attach around:"
+          " end 2 is on the axis of a head that the ligament winds around. length: reference, of strains. k1 to strain1, k2"
           " beyond [N/mm of the whole ligament];\n# without strain1: one slope k1 behind a toe, measured (its length"
           " toe [mm], its force toe_force [N]) or of 6 % strain. strands over a breadth"
           " of spread. slack: length without force, where the source states one.\n",

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "body/joints/bone_surfaces.h"
+#include "body/joints/joint_law.h"
 #include "body/joints/piece_builder.h"
 #include "body/tables.h"
 
@@ -14,6 +16,10 @@ namespace fabrica::body {
 namespace {
 
 constexpr double farthest = 25;  // [mm] of an end from its bone
+// A ligament that winds around a head and glides on it pulls at the head's axis: it ends in a node
+// there that spokes hold, one to the nearest node of the bone in each octant.
+constexpr double nearest_spoke = 3, farthest_spoke = 25;  // [mm]
+constexpr double spoke_area = 10;                         // [mm2]
 
 struct End {
   int bone;
@@ -38,10 +44,13 @@ class LigamentMaker {
     return sided >= 0 ? sided : find_bone(bones_, name, Side::midline);
   }
   End end(const Table& table, int row, Side side, const char* number) const;
+  // piece whose node 0 is the middle of spokes in a bone, made once
+  int hub(const End& end, const std::string& name, const std::string& source);
 
   const std::vector<PlacedBone>& bones_;
   BetweenBones& between_;
   BoneSurfaces surface_;
+  std::map<int, std::vector<int>> hubs_;  // of a bone: pieces whose node 0 is the hub
 };
 
 End LigamentMaker::end(const Table& table, int row, Side side, const char* number) const {
@@ -53,6 +62,36 @@ End LigamentMaker::end(const Table& table, int row, Side side, const char* numbe
   if (side == Side::left) p.y = -p.y;
   for (int i = 0; i < 3; ++i) p[i] *= b.mesh.scale[i];
   return {bone, b.placement(p)};
+}
+
+int LigamentMaker::hub(const End& end, const std::string& name, const std::string& source) {
+  for (int made : hubs_[end.bone])
+    if (norm(between_.pieces[std::size_t(made)].nodes[0].x - end.place) < 1) return made;
+  const PlacedBone& bone = bones_[std::size_t(end.bone)];
+  std::array<int, 8> nearest;
+  nearest.fill(-1);
+  std::array<double, 8> distance;
+  distance.fill(farthest_spoke);
+  for (std::size_t n = 0; n < bone.nodes.size(); ++n) {
+    const Point d = bone.placement.inverse(bone.nodes[n]) - bone.placement.inverse(end.place);
+    const std::size_t octant = std::size_t((d.x > 0) + 2 * (d.y > 0) + 4 * (d.z > 0));
+    if (norm(d) < nearest_spoke || norm(d) >= distance[octant]) continue;
+    nearest[octant] = int(n), distance[octant] = norm(d);
+  }
+  PieceBuilder builder(bones_);
+  builder.own(end.place);
+  for (int n : nearest)
+    if (n >= 0) builder.piece.lines.push_back({0, builder.of_bone(end.bone, n)});
+  builder.piece.name = name + "_hub";
+  builder.piece.region = bone.region;
+  builder.piece.kind = PieceKind::truss;
+  builder.piece.area = spoke_area;
+  builder.piece.law = joint_law("spokes");
+  builder.piece.bone_a = builder.piece.bone_b = part_name(bone, "");
+  builder.piece.source = source;
+  between_.pieces.push_back(std::move(builder.piece));
+  hubs_[end.bone].push_back(int(between_.pieces.size()) - 1);
+  return hubs_[end.bone].back();
 }
 
 LigamentStiffness stiffness_of(const Table& table, int row) {
@@ -101,6 +140,24 @@ void tie_strands(PieceBuilder& builder, const BoneSurface& a, const BoneSurface&
   }
 }
 
+// strands of one piece between the surface nodes nearest to the given places and a hub
+void tie_to_hub(PieceBuilder& builder, const BoneSurface& a, End from,
+                const std::vector<Point>& starts, const std::vector<Piece>& pieces, int hub) {
+  std::map<int, int> made;  // line of a node
+  for (const Point& start : starts) {
+    double distance;
+    const int node = a.nearest_node(start, distance);
+    const auto [line, fresh] = made.try_emplace(node, int(builder.piece.lines.size()));
+    if (!fresh) {
+      builder.piece.line_scale[std::size_t(line->second)] += 1;
+      continue;
+    }
+    builder.piece.lines.push_back(
+        {builder.of_bone(from.bone, node), builder.of_piece(pieces, hub, 0)});
+    builder.piece.line_scale.push_back(1);
+  }
+}
+
 void LigamentMaker::add(const Table& table, int row, Side side) {
   const End from = end(table, row, side, "1"), to = end(table, row, side, "2");
   if (from.bone < 0 || to.bone < 0) return;
@@ -123,9 +180,13 @@ void LigamentMaker::add(const Table& table, int row, Side side) {
   const std::string side_name = name_of(table.text(row, "side") == "M" ? Side::midline : side);
   report.name = fmt::format("{}.{}.{}", name_of(bone_a.region), side_name, table.text(row, "name"));
   report.distance = std::max(start_distance, end_distance);
-  tie_strands(builder, surface_[from.bone], surface_[to.bone], from, to,
-              spread(from.place, lateral, strands, breadth),
-              spread(to.place, lateral, strands, breadth));
+  const std::vector<Point> starts = spread(from.place, lateral, strands, breadth);
+  if (table.text(row, "attach") == "around")
+    tie_to_hub(builder, surface_[from.bone], from, starts, between_.pieces,
+               hub(to, report.name, table.text(row, "source")));
+  else
+    tie_strands(builder, surface_[from.bone], surface_[to.bone], from, to, starts,
+                spread(to.place, lateral, strands, breadth));
   if (report.distance > farthest && table.text(row, "attach") != "muscle")
     table.fail(row, fmt::format("an end lies {:.1f} mm from its bone, at most {} is possible",
                                 report.distance, farthest));

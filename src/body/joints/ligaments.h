@@ -1,6 +1,8 @@
 #pragma once
 // Every row of data/anatomy/joints/ligaments.csv as tension-only strands between surface nodes of
-// two bones.
+// two bones. One that winds around a head and glides on it (attach around) ends instead in a hub, a
+// node on the axis of the head that spokes hold in the bone: it does not wind up when the head
+// turns.
 //
 // A ligament is free of force in the posture the body is made in: discs and capsules are too, and
 // what a posture does to each is not measured. It is slack by s = max(reference length - distance
