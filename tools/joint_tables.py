@@ -88,6 +88,10 @@ ADDED += [[f"interosseous_membrane_leg_{z}", "leg", "R", "tibia", "tibia_R", 0.0
 # in both. They pull at its axis, 7 mm below the centre of the head: place [mm] in the radius, length [mm] from there
 HEAD = (0.06, 1.1, -6.94)
 WOUND = {"RCL": 31.9, "annular_anterior": 15.5}
+# The capsule of the hip is loose behind and below (Gray's Anatomy, in front and above thick): its lower part is as long as the
+# straight way between its ends where the range of flexion ends, 28.5 mm more than in standing
+LOOSE = {"capsule_inferior": 66.9}
+LOOSE_SOURCE = "; loose below (Gray's Anatomy): taut from the end of the range of flexion on, estimated"
 ADDED += [
     ["annular_posterior", "elbow", "R", "ulna", "ulna_R", -5.0, -10.2, -31.0, "radius", "radius_R", *HEAD, "around", 13.6, 10,
      30, "", "", "", "", 1, 0, "", "as annular_anterior; behind the radial notch of our ulna", "estimated"],
@@ -162,6 +166,8 @@ def ligaments(folder):
         attach = "facet" if row["name"].startswith("CL_") else "points"
         if row["name"] in ("achilles_tendon", "quadriceps_tendon_insertion"):
             attach, k1, source = "muscle", 10.0, "tendon in series with a passive muscle; estimated"
+        if row["name"] in LOOSE and row["region"] == "hip":
+            length, source = LOOSE[row["name"]], source + LOOSE_SOURCE
         if row["name"] in WOUND:
             attach, length, ends[3:] = "around", WOUND[row["name"]], HEAD
         if row["name"] == "inguinal":
