@@ -17,13 +17,16 @@ namespace detail {
 inline int cut_axis(const std::vector<Vec3d>& x, const int* first, const int* last,
                     const Vec3d& side) {
   const double n = double(last - first), longest = std::max({side.x, side.y, side.z});
+  const auto long_enough = [&](int d) { return !(side[d] < 0.9 * longest); };
+  if (long_enough(0) + long_enough(1) + long_enough(2) == 1)
+    return long_enough(0) ? 0 : long_enough(1) ? 1 : 2;
   double number = 0;
   Vec3d middle{0, 0, 0}, along{0, 0, 0};
   for (const int* i = first; i != last; ++i) number += *i / n, middle += (1 / n) * x[*i];
   for (const int* i = first; i != last; ++i) along += (*i - number) * (x[*i] - middle);
   int axis = -1;
   for (int d = 0; d < 3; ++d) {
-    if (side[d] < 0.9 * longest) continue;
+    if (!long_enough(d)) continue;
     // a clear difference only, as that between equal sides is rounding
     if (axis < 0 || std::abs(along[d]) > 1.2 * std::abs(along[axis])) axis = d;
   }

@@ -71,21 +71,19 @@ class ArticulationMaker {
   std::set<std::pair<int, int>> tied_;  // bone, node
 };
 
-// Is a place in the quarter of a bone's length at one of its ends?
-bool at_end(const PlacedBone& bone, BoneEnd end, const Point& place) {
+// lowest and highest of some nodes of a bone, in its own frame
+std::array<double, 2> heights(const PlacedBone& bone, const std::vector<int>& nodes) {
   double low = 1e30, high = -1e30;
-  for (const Point& n : bone.nodes) {
-    const double z = bone.placement.inverse(n).z;
+  for (int n : nodes) {
+    const double z = bone.placement.inverse(bone.nodes[std::size_t(n)]).z;
     low = std::min(low, z), high = std::max(high, z);
   }
-  const double way = (bone.placement.inverse(place).z - low) / (high - low);
-  return end == BoneEnd::upper ? way > 0.75 : way < 0.25;
+  return {low, high};
 }
 
 // Facets: behind the body and beside the midline; arches: behind the body. Other joints take every
-// face, of one end where bones meet at both.
+// face.
 bool ArticulationMaker::belongs(const Articulation& joint, int index, const Point& centre) const {
-  if (joint.end != BoneEnd::any && !at_end(bone(joint.a), joint.end, centre)) return false;
   if (joint.kind != ArticulationKind::facet && joint.kind != ArticulationKind::arch) return true;
   const Point local = bone(index).placement.inverse(centre);
   // the sacrum's frame is the pelvis: its facets lie behind the promontory
@@ -98,14 +96,22 @@ bool ArticulationMaker::belongs(const Articulation& joint, int index, const Poin
 Patch ArticulationMaker::patch(const Articulation& joint, int index, int other, double reach,
                                Facing facing) {
   Patch found;
-  const PlacedBone& here = bone(index);
+  const PlacedBone &here = bone(index), &first = bone(joint.a);
+  // where two bones meet at both ends, the quarter of the first that the joint is in
+  std::array<double, 2> z{0, 0};
+  if (joint.end != BoneEnd::any) z = heights(first, surface_[joint.a].nodes());
+  const auto beyond_end = [&](const Point& place) {
+    if (joint.end == BoneEnd::any) return false;
+    const double way = (first.placement.inverse(place).z - z[0]) / (z[1] - z[0]);
+    return joint.end == BoneEnd::upper ? way <= 0.75 : way >= 0.25;
+  };
   for (std::size_t q = 0; q < here.mesh.surface.size(); ++q) {
     const auto& s = here.mesh.surface[q];
     const Point x[4] = {here.nodes[std::size_t(s[0])], here.nodes[std::size_t(s[1])],
                         here.nodes[std::size_t(s[2])], here.nodes[std::size_t(s[3])]};
     const Point centre = 0.25 * (x[0] + x[1] + x[2] + x[3]);
     const SurfacePoint there = surface_[other].nearest(centre, reach);
-    if (there.quad < 0 || !belongs(joint, index, centre)) continue;
+    if (there.quad < 0 || beyond_end(centre) || !belongs(joint, index, centre)) continue;
     const Point back =
         facing == Facing::edge && there.distance > 0 ? unit(centre - there.point) : there.normal;
     if (dot(quad_normal(x[0], x[1], x[2], x[3]), back) > -0.4) continue;
@@ -120,9 +126,7 @@ Patch ArticulationMaker::patch(const Articulation& joint, int index, int other, 
 void ArticulationMaker::go_around(const Articulation& joint, Patch& patch) const {
   const PlacedBone& head = bone(joint.a);
   const auto local = [&](int n) { return head.placement.inverse(head.nodes[std::size_t(n)]); };
-  double low = 1e30, high = -1e30;
-  for (int n : nodes_of(joint.a, patch))
-    low = std::min(low, local(n).z), high = std::max(high, local(n).z);
+  const auto [low, high] = heights(head, nodes_of(joint.a, patch));
   std::set<int> quads(patch.quads.begin(), patch.quads.end());
   for (std::size_t q = 0; q < head.mesh.surface.size(); ++q) {
     const auto& s = head.mesh.surface[q];

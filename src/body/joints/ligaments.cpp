@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 
 #include "body/joints/bone_surfaces.h"
 #include "body/joints/joint_law.h"
@@ -72,8 +71,9 @@ int LigamentMaker::hub(const End& end, const std::string& name, const std::strin
   nearest.fill(-1);
   std::array<double, 8> distance;
   distance.fill(farthest_spoke);
+  const Point place = bone.placement.inverse(end.place);
   for (std::size_t n = 0; n < bone.nodes.size(); ++n) {
-    const Point d = bone.placement.inverse(bone.nodes[n]) - bone.placement.inverse(end.place);
+    const Point d = bone.placement.inverse(bone.nodes[n]) - place;
     const std::size_t octant = std::size_t((d.x > 0) + 2 * (d.y > 0) + 4 * (d.z > 0));
     if (norm(d) < nearest_spoke || norm(d) >= distance[octant]) continue;
     nearest[octant] = int(n), distance[octant] = norm(d);
@@ -120,41 +120,34 @@ std::vector<Point> spread(const Point& centre, const Point& lateral, int n, doub
   return places;
 }
 
+// a line between two nodes of the piece; two strands on one pair are one of double force
+void add_strand(Piece& piece, const std::array<int, 2>& ends) {
+  const auto line = std::find(piece.lines.begin(), piece.lines.end(), ends);
+  if (line == piece.lines.end())
+    piece.lines.push_back(ends), piece.line_scale.push_back(1);
+  else
+    piece.line_scale[std::size_t(line - piece.lines.begin())] += 1;
+}
+
 // strands of one piece between the surface nodes nearest to the given places
 void tie_strands(PieceBuilder& builder, const BoneSurface& a, const BoneSurface& b, End from,
                  End to, const std::vector<Point>& starts, const std::vector<Point>& ends) {
-  std::set<std::pair<int, int>> used;
   for (std::size_t i = 0; i < starts.size(); ++i) {
-    double da, db;
-    const int na = a.nearest_node(starts[i], da), nb = b.nearest_node(ends[i], db);
-    if (!used.insert({na, nb}).second) {
-      // two strands on one pair of nodes: one of double force
-      for (std::size_t k = 0; k < builder.piece.lines.size(); ++k)
-        if (builder.piece.nodes[std::size_t(builder.piece.lines[k][0])].node == na &&
-            builder.piece.nodes[std::size_t(builder.piece.lines[k][1])].node == nb)
-          builder.piece.line_scale[k] += 1;
-      continue;
-    }
-    builder.piece.lines.push_back({builder.of_bone(from.bone, na), builder.of_bone(to.bone, nb)});
-    builder.piece.line_scale.push_back(1);
+    double distance;
+    const int start = builder.of_bone(from.bone, a.nearest_node(starts[i], distance));
+    const int end = builder.of_bone(to.bone, b.nearest_node(ends[i], distance));
+    add_strand(builder.piece, {start, end});
   }
 }
 
 // strands of one piece between the surface nodes nearest to the given places and a hub
 void tie_to_hub(PieceBuilder& builder, const BoneSurface& a, End from,
                 const std::vector<Point>& starts, const std::vector<Piece>& pieces, int hub) {
-  std::map<int, int> made;  // line of a node
-  for (const Point& start : starts) {
+  for (const Point& place : starts) {
     double distance;
-    const int node = a.nearest_node(start, distance);
-    const auto [line, fresh] = made.try_emplace(node, int(builder.piece.lines.size()));
-    if (!fresh) {
-      builder.piece.line_scale[std::size_t(line->second)] += 1;
-      continue;
-    }
-    builder.piece.lines.push_back(
-        {builder.of_bone(from.bone, node), builder.of_piece(pieces, hub, 0)});
-    builder.piece.line_scale.push_back(1);
+    const int start = builder.of_bone(from.bone, a.nearest_node(place, distance));
+    const int end = builder.of_piece(pieces, hub, 0);
+    add_strand(builder.piece, {start, end});
   }
 }
 
