@@ -16,14 +16,6 @@ namespace {
 
 using Id = std::int64_t;
 
-// Places to a nanometre and thicknesses to 1/1024 mm: they fit the fields of a deck without loss.
-Point to_field(const Point& p) {
-  constexpr double per_mm = 1e6;
-  return {std::round(p.x * per_mm) / per_mm, std::round(p.y * per_mm) / per_mm,
-          std::round(p.z * per_mm) / per_mm};
-}
-double to_field(double thickness) { return std::round(thickness * 1024) / 1024; }
-
 // counters of ids, one block of a million a region
 struct RegionIds {
   Id node, element, part;
@@ -146,7 +138,7 @@ class Assembly {
         // each rigid bone is a body of its own: parts that share a rigid material stay apart
         part_of_layer[layer] =
             part(bone.region, part_name(bone, rigid ? "whole" : tissue(bone, layer)),
-                 bends ? bending_section : solid_section, materials_.use(row),
+                 bends ? bending_section : solid_section, materials_.use(row, bone.faster),
                  rigid || bends ? 0 : stiff_hourglass, {0, "", row, "", index, -1, 0, rigid});
         entry_of_[part_of_layer[layer]] = out_.parts.size() - 1;
       }
@@ -176,7 +168,7 @@ class Assembly {
                                  : solid                                        ? "cortical_shell"
                                                                                 : "cortical";
         pid = part(bone.region, part_name(bone, name), bone_shell_section,
-                   materials_.use(rows.cortical), cortex_hourglass,
+                   materials_.use(rows.cortical, bone.faster), cortex_hourglass,
                    {0, "", rows.cortical, "", index, -1, 0, false});
       }
       std::array<Id, 4> corner{};

@@ -1,5 +1,7 @@
 #include "body/cards.h"
 
+#include <cmath>
+
 namespace fabrica::body {
 
 Card& titled(Builder& builder, const char* keyword, const std::string& title) {
@@ -8,6 +10,13 @@ Card& titled(Builder& builder, const char* keyword, const std::string& title) {
   card.title = title;
   return card;
 }
+
+Point to_field(const Point& p) {
+  constexpr double per_mm = 1e6;
+  return {std::round(p.x * per_mm) / per_mm, std::round(p.y * per_mm) / per_mm,
+          std::round(p.z * per_mm) / per_mm};
+}
+double to_field(double thickness) { return std::round(thickness * 1024) / 1024; }
 
 void add_curve(Builder& builder, std::int64_t id, const std::string& title,
                const std::vector<std::pair<double, double>>& points) {

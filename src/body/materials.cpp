@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <sstream>
 
@@ -26,35 +27,80 @@ Card& Materials::card(const std::string& keyword, const std::string& title) {
   return card;
 }
 
-std::int64_t Materials::next_curve(const std::string& title,
-                                   const std::vector<std::pair<double, double>>& points) {
+std::int64_t Materials::next_curve(const std::string& title, const Points& points) {
   add_curve(builder_, ++last_curve_, title, points);
   return last_curve_;
 }
 
-std::int64_t Materials::use(const std::string& row) {
-  if (const auto made = ids_.find(row); made != ids_.end()) return made->second;
+// "0:0.1;1:1.2" as pairs
+Materials::Points Materials::points(int row, const std::string& item,
+                                    const std::string& text) const {
+  Points out;
+  std::istringstream pairs(text);
+  for (std::string pair; std::getline(pairs, pair, ';');) {
+    double x = 0, y = 0;
+    int end = 0;
+    if (std::sscanf(pair.c_str(), "%lf:%lf%n", &x, &y, &end) != 2 ||
+        std::size_t(end) != pair.size())
+      table_.fail(row, fmt::format("'{}' of '{}' is no pair; write x:y;x:y", pair, item));
+    out.emplace_back(x, y);
+  }
+  return out;
+}
+
+// fields of a row on its card; yield: its curve in tension, if it has one
+void Materials::fill(int row, Card& card, double faster, Points& yield) {
+  const KeywordSchema& schema = *card.schema;
+  const auto rate = [](const FieldSchema& f) { return f.unit == "rate" || f.unit == "1/time"; };
+  std::istringstream fields(table_.text(row, "fields"));
+  for (std::string item; fields >> item;) {
+    const std::size_t equals = item.find('=');
+    const std::string name = item.substr(0, equals);
+    if (equals != std::string::npos && name == "prony" && card.columns() >= 2) {
+      for (const auto& [modulus, decay] : points(row, item, item.substr(equals + 1)))
+        card.add_row({modulus, faster * decay});
+      continue;
+    }
+    if (equals == std::string::npos || !card.has_field(name))
+      table_.fail(row, fmt::format("'{}' is no field of {}; write field=value", item, schema.name));
+    if (item.find(':') != std::string::npos) {
+      const Points curve = points(row, item, item.substr(equals + 1));
+      card.set(name, double(next_curve(table_.text(row, "tissue") + " " + name, curve)));
+      if (name == "lcidt") yield = curve;
+      continue;
+    }
+    const double value = std::atof(item.c_str() + equals + 1);
+    bool scaled = false;
+    for (const CardSchema& c : schema.cards)
+      for (const FieldSchema& f : c.fields) scaled = scaled || (f.name == name && rate(f));
+    card.set(name, scaled ? faster * value : value);
+  }
+}
+
+// fracture: `delete` acts in every run, `strain` where asked for
+void Materials::let_break(int row, Card& card, double faster, const Points& yield) const {
+  const std::string& criterion = table_.text(row, "criterion");
+  const char* field = card.has_field("fail") ? "fail" : "fs";
+  if (criterion == "delete") card.set(field, table_.number(row, "value"));
+  if (criterion != "strain" || !fracture_) return;
+  const double strain = table_.number(row, "value");
+  const double rate =
+      table_.text(row, "rate").empty() ? 0 : faster * table_.number(row, "rate") / per_ms;
+  card.set(field, yield.size() > 1 ? plastic_strain_at(card.real("e"), yield, strain)
+                                   : plastic_strain_at(card, strain, rate));
+}
+
+std::int64_t Materials::use(const std::string& row, double faster) {
+  if (const auto made = ids_.find({row, faster}); made != ids_.end()) return made->second;
   const auto at = row_of_.find(row);
   if (at == row_of_.end()) throw BodyError(fmt::format("data/materials.csv has no row '{}'", row));
   const int r = at->second;
   Card& c = card(table_.text(r, "keyword"), table_.text(r, "tissue"));
-  std::istringstream fields(table_.text(r, "fields"));
-  for (std::string item; fields >> item;) {
-    const std::size_t equals = item.find('=');
-    if (equals == std::string::npos || !c.has_field(item.substr(0, equals)))
-      table_.fail(r, fmt::format("'{}' is no field of {}; write field=value", item,
-                                 table_.text(r, "keyword")));
-    c.set(item.substr(0, equals), std::atof(item.c_str() + equals + 1));
-  }
-  // fracture: `delete` acts in every run, `strain` where asked for
-  const std::string& criterion = table_.text(r, "criterion");
-  const char* field = c.has_field("fail") ? "fail" : "fs";
-  if (criterion == "delete") c.set(field, table_.number(r, "value"));
-  if (criterion == "strain" && fracture_)
-    c.set(field, plastic_strain_at(
-                     c, table_.number(r, "value"),
-                     table_.text(r, "rate").empty() ? 0 : table_.number(r, "rate") / per_ms));
-  return ids_[row] = last_material_;
+  const std::int64_t id = last_material_;
+  Points yield;
+  fill(r, c, faster, yield);
+  let_break(r, c, faster, yield);
+  return ids_[{row, faster}] = id;
 }
 
 double plastic_strain_at(const Card& law, double strain, double rate) {
@@ -67,6 +113,11 @@ double plastic_strain_at(const Card& law, double strain, double rate) {
   if (curve.size() < 2) curve = {{0, yield}, {1, yield + E * tangent / (E - tangent)}};
   if (rate > 0)
     for (auto& point : curve) point.second *= 1 + std::pow(rate / law.real("c"), 1 / law.real("p"));
+  return plastic_strain_at(E, curve, strain);
+}
+
+double plastic_strain_at(double E, const std::vector<std::pair<double, double>>& curve,
+                         double strain) {
   if (curve[0].second >= E * strain) return 0;
   // the piece that holds the root, the last one goes on
   std::size_t i = 0;

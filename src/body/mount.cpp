@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "body/cards.h"
 #include "body/fixture.h"
@@ -72,6 +73,7 @@ class Laying {
     const Placement to_rig = placement();
     for (const int b : bones_) {
       PlacedBone& bone = body_.bones[std::size_t(b)];
+      bone.faster = specimen_.faster;
       bone.placement = {to_rig.R * bone.placement.R, to_rig(bone.placement.t)};
       for (Point& p : bone.nodes) p = to_rig(p);
     }
@@ -166,6 +168,8 @@ class Mounting {
   }
 
  private:
+  static constexpr int first_axis = 8000001;      // ids of the orientations of springs
+  static constexpr int resin_parts = 10000;       // from the number of a pot to that of its resin
   static constexpr double brick_density = 2e-6;   // [kg/mm3] of the pot's own brick
   static constexpr double bone_density = 1.5e-6;  // [kg/mm3] between trabecular and cortical bone
 
@@ -179,6 +183,7 @@ class Mounting {
       for (const int n : brick) volume[std::size_t(n)] += share;
     }
     RigidMass mass{0, pivot, {}};
+    if (pot.foundation > 0) volume.assign(volume.size(), 0);  // the bone is not of the body
     for (const int n : held)
       mass.add(bone_density * volume[std::size_t(n)], bone.nodes[std::size_t(n)]);
     mass.mass += pot.mass;
@@ -200,9 +205,57 @@ class Mounting {
                                               mass_of(pot, bone, held, pivot));
     // a brick of 2 mm at the pivot: the rigid part that the nodes of the pot join
     add_shape(box_mesh({2, 2, 2}, 2), id, id, {identity3<double>(), pivot}, assembled_, builder_);
-    builder_.add_card("CONSTRAINED_EXTRA_NODES_SET").add_row({double(id), double(node_set), 0});
+    const std::int64_t joined =
+        pot.foundation > 0 ? resin(pot, title, id, bone, held, nodes) : node_set;
+    builder_.add_card("CONSTRAINED_EXTRA_NODES_SET").add_row({double(id), double(joined), 0});
     section(id, node_set, title, held, b);
     mounted_.push_back({id, title, pivot});
+  }
+
+  // Springs between the surface of the bone in a pot and nodes of the cup at the same places, along
+  // x, y and z: a foundation K per length on the area A of a depth d is K d / A per area. Returns
+  // the set of the nodes of the cup.
+  std::int64_t resin(const RigPot& pot, const std::string& title, std::int64_t pot_id,
+                     const PlacedBone& bone, const std::vector<int>& held,
+                     const std::vector<std::int64_t>& nodes) {
+    std::map<int, double> area;  // node of the bone
+    for (const auto& quad : bone.mesh.surface) {
+      const auto in_pot = [&](int n) { return std::binary_search(held.begin(), held.end(), n); };
+      if (!std::all_of(quad.begin(), quad.end(), in_pot)) continue;
+      const auto& x = bone.nodes;
+      const Point diagonal = x[std::size_t(quad[2])] - x[std::size_t(quad[0])];
+      const double size = norm(cross(diagonal, x[std::size_t(quad[3])] - x[std::size_t(quad[1])]));
+      for (const int n : quad) area[n] += size / 8;
+    }
+    double sum = 0;
+    for (const auto& [node, size] : area) sum += size;
+    const double id = double(pot_id + resin_parts);
+    titled(builder_, "SECTION_DISCRETE", title).set("secid", id).set("dro", 0);
+    titled(builder_, "MAT_SPRING_ELASTIC", title)
+        .set("mid", id)
+        .set("k", pot.foundation * pot.depth);
+    Card& part = builder_.add_card("PART");
+    part.title = "rig." + title + " resin";
+    part.set("pid", id).set("secid", id).set("mid", id);
+    if (axes_ == 0)
+      for (const Point& axis : {Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}})
+        builder_.add_card("DEFINE_SD_ORIENTATION")
+            .set("vid", double(first_axis + axes_++))
+            .set("iop", 0)
+            .set("xt", axis.x)
+            .set("yt", axis.y)
+            .set("zt", axis.z);
+    std::vector<std::int64_t> cup;
+    for (const auto& [n, size] : area) {
+      const std::int64_t own = assembled_.next_node++;
+      builder_.add_node(own, to_field(bone.nodes[std::size_t(n)]));
+      cup.push_back(own);
+      const auto at = std::lower_bound(held.begin(), held.end(), n) - held.begin();
+      for (int axis = 0; axis < 3; ++axis)
+        builder_.add_discrete(assembled_.next_element++, std::int64_t(id), nodes[std::size_t(at)],
+                              own, first_axis + axis, size / sum, 0);
+    }
+    return cards_.set("SET_NODE_LIST", title + " cup", cup);
   }
 
   // the elements that join the pot to the rest of the bone, and their force on it
@@ -237,6 +290,7 @@ class Mounting {
   Builder& builder_;
   RigCards cards_;
   std::vector<MountedPart> mounted_;
+  int axes_ = 0;  // orientations made
 };
 
 }  // namespace

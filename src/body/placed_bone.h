@@ -19,6 +19,7 @@ struct PlacedBone {
   std::string frame;         // carrier frame, "femur", "C3", "thorax", without side
   Placement placement;       // of this bone: the ribs' own, see skeleton.h
   std::vector<Point> nodes;  // [mm] global: placement(mesh.nodes[i])
+  double faster = 1;         // of a test that is run so many times faster than it was done
 };
 
 // puts a bone where the skeleton has its frame

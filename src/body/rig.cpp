@@ -125,6 +125,10 @@ RigPot read_pot(RigTable table) {
     table.fail("pivot_at", "and pivot say where the pivot is; take one out");
   pot.mass = table.number("mass", 0);
   if (pot.mass < 0) table.fail("mass", "is below 0; give that of the cup in kg");
+  if (table.find("foundation"))
+    pot.foundation = table.positive("foundation", "that of the resin in kN/mm2");
+  if (pot.foundation > 0 && !(pot.mass > 0))
+    table.fail("foundation", "lets the bone move in its cup; give the mass of cup and resin in kg");
   pot.support = read_support(table);
   table.finish();
   return pot;
@@ -208,6 +212,8 @@ RigSpecimen read_specimen(RigTable table, const std::vector<RigPot>& pots) {
   specimen.up = table.point("up");
   if (specimen.up && specimen.from.empty())
     table.fail("up", "turns a specimen about the line of its pots; give along, or take it out");
+  if (table.find("faster"))
+    specimen.faster = table.positive("faster", "by how much the run is faster than the test");
   table.finish();
   return specimen;
 }

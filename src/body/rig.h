@@ -44,6 +44,7 @@ struct RigSpecimen {
   double offset = 0;     // [mm] of the pivot of `to` along y
   Point at{0, 0, 0};
   std::optional<Point> up;
+  double faster = 1;  // than the test it stands for: rates of the bones' laws are as much higher
 
   std::vector<BoneName> bones() const;  // the bone and those with it
 };
@@ -60,6 +61,9 @@ struct RigPot {
   std::optional<double> pivot;    // [mm]
   std::optional<Point> pivot_at;  // [mm] in the bone's frame, instead
   double mass = 0;                // [kg] of the cup, beside that of the bone in it
+  // [kN/mm2] of the resin between bone and cup: force across by length and displacement; 0: the
+  // bone is held rigidly
+  double foundation = 0;
   RigSupport support;
 };
 

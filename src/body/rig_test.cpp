@@ -254,6 +254,53 @@ TEST_CASE("a pot turns about its pivot, with the mass of the bone in it") {
   CHECK(norm(at.parts[0].pivot - Point{7, 8, 9}) < 1e-9);  // where the specimen lays it
 }
 
+// the resin's springs add up to its foundation times the depth, in each of three directions
+TEST_CASE("a foundation joins the bone to its pot by springs") {
+  const Mounted held(rig_of(good));
+  const Mounted mounted(rig_with({{"depth = 20", "depth = 20\nmass = 0.3\nfoundation = 2"}}));
+  const auto& model = *mounted.model;
+  const auto& springs = model.discretes;
+  REQUIRE(springs.size() > 0);
+  REQUIRE(springs.size() % 3 == 0);
+  double sum[3] = {0, 0, 0};
+  for (int i = 0; i < springs.size(); ++i) {
+    const Vec3d a = model.nodes.x[std::size_t(springs.node[i][0])],
+                b = model.nodes.x[std::size_t(springs.node[i][1])];
+    CHECK(norm(a - b) == 0);
+    sum[i % 3] += springs.scale[i];
+  }
+  for (const double s : sum) CHECK(s == doctest::Approx(1));
+  double stiffness = 0;
+  for (const auto& card : model.cards)
+    if (card->schema->name == "MAT_SPRING_ELASTIC") stiffness = card->real("k");
+  CHECK(stiffness == doctest::Approx(2 * 20));
+  // the pot weighs what its cup does, without the bone
+  const auto mass = [](const Mounted& m) {
+    return m.model->parts[std::size_t(m.model->part_index(m.parts[0].id))].inertia->mass;
+  };
+  CHECK(mass(mounted) == doctest::Approx(0.3));
+  CHECK(mass(held) > 0);
+  // numbers of pots and the section stay
+  CHECK(mounted.parts[0].id == held.parts[0].id);
+  CHECK(mounted.parts[1].id == held.parts[1].id);
+  CHECK(model.cross_sections[0].solids == held.model->cross_sections[0].solids);
+  CHECK(refusal("depth = 20", "depth = 20\nfoundation = 2").find("mass of cup and resin") !=
+        std::string::npos);
+}
+
+TEST_CASE("a run faster than its test has laws with higher rates") {
+  const auto constant = [](const Mounted& m) {
+    double c = 0;
+    for (const auto& card : m.model->cards)
+      if (card->schema->name == "MAT_PIECEWISE_LINEAR_PLASTICITY") c = card->real("c");
+    return c;
+  };
+  const Mounted slow(rig_of(good)),
+      fast(rig_with({{"at = [7, 8, 9]", "at = [7, 8, 9]\nfaster = 10"}}));
+  CHECK(constant(slow) > 0);
+  CHECK(constant(fast) == doctest::Approx(10 * constant(slow)));
+}
+
 namespace {
 
 // the good rig with a fixture above the flat rib, which may slide along z

@@ -149,6 +149,27 @@ TEST_CASE("writer: reading back gives the same bits, in short and in long format
   }
 }
 
+TEST_CASE("writer: rows that repeat stand behind blank optional cards") {
+  Diagnostics d;
+  Builder builder(d);
+  Card& law = builder.add_card("MAT_PLASTICITY_COMPRESSION_TENSION");
+  law.set("mid", 1).set("ro", 2e-6).set("e", 17).set("lcidc", 1).set("lcidt", 1);
+  law.add_row({1.15, 0.0333}).add_row({2.48, 3.33});
+  const auto model = builder.finish();
+  std::stringstream out;
+  write_deck(*model, out);
+  Diagnostics again;
+  const auto copy = read_deck_text(out.str(), "copy", again);
+  const Card* read = nullptr;
+  for (const auto& card : copy->cards)
+    if (card->schema->category == "material") read = card.get();
+  REQUIRE(read);
+  CHECK_FALSE(read->given("k"));
+  REQUIRE(read->row_count() == 2);
+  CHECK(read->row(0, "betai") == 0.0333);
+  CHECK(read->row(1, "gi") == 2.48);
+}
+
 // No double may grow out of its 20 columns into those of the next field.
 TEST_CASE("writer: numbers of 17 digits keep to their columns") {
   for (const char* x :

@@ -212,9 +212,10 @@ class DeckWriter {
       own_title = own_title || c.condition.find("option(TITLE)") != std::string::npos;
     if (card.has_option("TITLE") && !own_title) text(card.title + "\n");
     std::size_t first = 0, last_line = 0, line = 0;
-    // optional cards up to the last that was there
+    // optional cards up to the last that was there; all of them where rows follow
     for (std::size_t i = 0; i < card.card_lines.size(); ++i)
       if (present(card, i)) last_line = i;
+    if (card.row_count() > 0) last_line = card.schema->cards.size();
     for (const CardSchema& c : card.schema->cards) {
       if (c.repeats) continue;
       const std::size_t at = line++, begin = first;

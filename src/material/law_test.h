@@ -118,7 +118,15 @@ struct Samples {
                               {"e2", .1},   {"n2", .2},  {"pr", .05}};
   TestParameters crushable{{"ro", 5e-8}, {"e", .01}, {"pr", .1}, {"tsc", .0005}, {"damp", .1}};
 
+  TestParameters bone{{"ro", 2e-6}, {"e", 17},  {"pr", .3},  {"fail", 1e20},
+                      {"c", .36},   {"p", 4.6}, {"pc", .05}, {"pt", .02}};
+  TestParameters bone_viscous{{"ro", 2e-6}, {"e", 17}, {"pr", .3}, {"fail", 1e20}};
+
   Samples() {
+    for (TestParameters* p : {&bone, &bone_viscous})
+      p->set_curve("lcidc", {{0, .18}, {.02, .2}, {1, .5}})
+          .set_curve("lcidt", {{0, .11}, {.01, .12}, {1, .3}});
+    bone_viscous.add_row({{"gi", 2}, {"betai", .5}}).add_row({{"gi", 3}, {"betai", 20}});
     curved.set_curve("lcss", {{0, .3}, {.01, .36}, {.05, .42}, {.2, .5}, {1, .55}});
     tabled.set_table(
         "lcss", {{-7, {{0, .3}, {1, .4}}}, {0, {{0, .4}, {1, .5}}}, {4, {{0, .6}, {1, .7}}}}, true);
@@ -142,6 +150,8 @@ struct Samples {
     visit(MooneyRivlin::from(mooney)), visit(Ogden::from(ogden)),
         visit(ViscousOgden::from(ogden_viscous)), visit(HyperelasticRubber::from(hyperelastic));
     visit(LowDensityFoam::from(foam)), visit(ViscousLowDensityFoam::from(foam_viscous));
+    visit(PlasticityCompressionTension::from(bone)),
+        visit(ViscousPlasticityCompressionTension::from(bone_viscous));
     visit(ViscousFoam::from(viscous_foam)), visit(CrushableFoam::from(crushable));
   }
 };

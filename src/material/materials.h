@@ -18,6 +18,7 @@
 #include "material/piecewise_linear_plasticity.h"
 #include "material/plane_stress.h"
 #include "material/plastic_kinematic.h"
+#include "material/plasticity_compression_tension.h"
 #include "material/uniaxial.h"
 #include "material/viscoelastic.h"
 #include "material/viscous_foam.h"
@@ -32,7 +33,8 @@ struct MaterialList {
 using Materials = MaterialList<ElasticLaw, ElasticFluid, PlasticKinematic, Viscoelastic, Null,
                                PiecewiseLinearPlasticity, MooneyRivlin, LowDensityFoam,
                                ViscousLowDensityFoam, KelvinMaxwell, ViscousFoam, CrushableFoam,
-                               Ogden, ViscousOgden, Muscle, HyperelasticRubber>;
+                               Ogden, ViscousOgden, Muscle, HyperelasticRubber,
+                               PlasticityCompressionTension, ViscousPlasticityCompressionTension>;
 
 // carries a law's type through a generic lambda
 template <class M>
