@@ -84,6 +84,7 @@ void Materials::let_break(int row, Card& card, double faster, const Points& yiel
   if (criterion == "delete") card.set(field, table_.number(row, "value"));
   if (criterion != "strain" || !fracture_) return;
   const double strain = table_.number(row, "value");
+  if (card.has_field("numint")) card.set("numint", 1);  // a shell breaks with its first layer
   const double rate =
       table_.text(row, "rate").empty() ? 0 : faster * table_.number(row, "rate") / per_ms;
   card.set(field, yield.size() > 1 ? plastic_strain_at(card.real("e"), yield, strain)

@@ -292,7 +292,7 @@ TEST_CASE("a run faster than its test has laws with higher rates") {
   const auto constant = [](const Mounted& m) {
     double c = 0;
     for (const auto& card : m.model->cards)
-      if (card->schema->name == "MAT_PIECEWISE_LINEAR_PLASTICITY") c = card->real("c");
+      if (card->schema->name == "MAT_MODIFIED_PIECEWISE_LINEAR_PLASTICITY") c = card->real("c");
     return c;
   };
   const Mounted slow(rig_of(good)),

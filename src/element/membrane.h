@@ -1,11 +1,10 @@
 #pragma once
 // Membranes (ELFORM 5 and 9): plane stress in the surface, no bending, no transverse shear, no
-// rotations. ELFORM 5: one point with B1, B2 as in shell_bt.h and control of the in-plane hourglass
-// modes
-//   q_a = gamma.v_a,  Q_a += QM E h A BB/8 q_a dt / 16  (IHQ >= 4; / 16: in amplitudes of the
-//   modes,
-//     as shell_bt.h), held at s h sqrt(A)/4 while the point flows at the stress s,
-//   Q_a = QM E h A BB/8 q_a sqrt(A)/c  (viscous) (1)
+// rotations.
+// ELFORM 5: one point with B1, B2 as in shell_bt.h and control of the in-plane hourglass modes
+//   q_a = gamma.v_a,   Q_a = QM E h A BB/8 q_a sqrt(A)/c  (viscous)                            (1)
+//   Q_a += QM E h A BB/8 q_a dt / 16  (IHQ >= 4; / 16: in amplitudes of the modes, as shell_bt.h),
+//     held at s h sqrt(A)/4 while the point flows at the stress s
 // ELFORM 9: 2 x 2 points, Almansi strain at each.
 // Source: Belytschko, Lin, Tsay 1984 (membrane part); Flanagan and Belytschko 1981 (hourglass).
 #include "element/shell_bt.h"

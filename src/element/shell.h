@@ -160,8 +160,9 @@ struct ShellLayers {
     const L zero = L(0.0), half_h = L(0.5) * h;
     ShellResultants<L> r{zero, zero, zero, zero,   zero, zero,  zero,
                          zero, zero, zero, L(1.0), zero, L(1.0)};
-    L modulus = start.modulus;
+    L modulus = start.modulus, failed = zero;
     KeptStress<L> share;
+    const StateView<L> first = s;
     for (int q = 0; q < p.layers; ++q, s.block += stride * block_size) {
       const L z = half_h * L(p.layer_z[q] - p.reference_location), w = L(p.layer_weight[q]);
       const Sym3<L> strain{
@@ -177,6 +178,7 @@ struct ShellLayers {
         const L live = min(s.load(alive), point.alive);
         s.store(alive, live);
         r.alive = max(r.alive, live);
+        failed += L(1.0) - live;
         now = live * now;
       }
       s.store(0, now.xx), s.store(1, now.yy), s.store(2, now.xy), s.store(3, now.yz),
@@ -187,6 +189,8 @@ struct ShellLayers {
       r.thinning = fma(w, dzz, r.thinning);
       modulus = max(modulus, point.modulus);
     }
+    if constexpr (requires { law.layers_to_fail(); })
+      if (law.layers_to_fail() > 0) fail_together(p, law.layers_to_fail(), failed, first, r);
     finish(r, h);
     r.flow = share.flow();
     r.stiffening = modulus / start.modulus;
@@ -208,6 +212,16 @@ struct ShellLayers {
   }
 
  private:
+  // Where so many layers have failed all do, and carry nothing.
+  template <class L>
+  FABRICA_FN static void fail_together(const ElementParameters& p, int count, const L& failed,
+                                       StateView<L> s, ShellResultants<L>& r) {
+    const L live = select(failed < L(Real(count) - Real(0.5)), L(1.0), L(0.0));
+    for (int q = 0; q < p.layers; ++q, s.block += stride * block_size)
+      s.store(alive, live * s.load(alive));
+    r.alive = live * r.alive;
+    for (L* part : {&r.nxx, &r.nyy, &r.nxy, &r.mxx, &r.myy, &r.mxy, &r.qx, &r.qy}) *part *= live;
+  }
   template <class L>
   FABRICA_FN static void add(ShellResultants<L>& r, const L& w, const L& z, const Sym3<L>& old,
                              const Sym3<L>& now, const Sym3<L>& strain) {

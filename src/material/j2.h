@@ -1,11 +1,12 @@
 #pragma once
 // Return mapping of von Mises plasticity with isotropic and linear kinematic hardening, in three
 // dimensions and in plane stress, where transverse shear flows with the rest or stays elastic.
-//   xi = s - a,   q^2 = 3/2 dev(xi):dev(xi),   q <= Y(ep + dep),   dep = 2/3 lambda q (1) d(plastic
-//   strain) = lambda dev(xi),   da = 2/3 Hk lambda dev(xi) q(lambda)^2 = A / (1 + ca lambda)^2 + B
-//   / (1 + cb lambda)^2,   cb = 2G + 2/3 Hk                         (2) three dimensions: A = 0, B
-//   = q_trial^2 plane stress:     A = (xx+yy)^2/4, B = 3/4 (yy-xx)^2 + 3 (xy^2+yz^2+zx^2), ca =
-//   E/(3(1-nu)) + 2/3 Hk
+//   xi = s - a,   q^2 = 3/2 dev(xi):dev(xi),   q <= Y(ep + dep),   dep = 2/3 lambda q      (1)
+//   d(plastic strain) = lambda dev(xi),   da = 2/3 Hk lambda dev(xi)
+//   q(lambda)^2 = A / (1 + ca lambda)^2 + B / (1 + cb lambda)^2,   cb = 2G + 2/3 Hk        (2)
+//     three dimensions: A = 0, B = q_trial^2
+//     plane stress: A = (xx+yy)^2/4, B = 3/4 (yy-xx)^2 + 3 (xy^2+yz^2+zx^2),
+//       ca = E/(3(1-nu)) + 2/3 Hk
 // xi of plane stress is s - (a - a_zz I), so that its zz part vanishes.
 // Source: Simo and Taylor, Int. J. Num. Meth. Eng. 22 (1986); Simo and Hughes, Computational
 // Inelasticity, ch. 3.

@@ -146,6 +146,7 @@ struct Samples {
     visit(PlasticKinematic::from(plastic)), visit(PlasticKinematic::from(plastic_rate));
     visit(PiecewiseLinearPlasticity::from(plastic)), visit(PiecewiseLinearPlasticity::from(curved));
     visit(PiecewiseLinearPlasticity::from(tabled));
+    visit(ModifiedPiecewiseLinearPlasticity::from(curved));
     visit(Viscoelastic::from(viscoelastic)), visit(KelvinMaxwell::from(kelvin));
     visit(MooneyRivlin::from(mooney)), visit(Ogden::from(ogden)),
         visit(ViscousOgden::from(ogden_viscous)), visit(HyperelasticRubber::from(hyperelastic));

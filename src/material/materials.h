@@ -11,6 +11,7 @@
 #include "material/hyperelastic_rubber.h"
 #include "material/kelvin_maxwell.h"
 #include "material/low_density_foam.h"
+#include "material/modified_piecewise_linear_plasticity.h"
 #include "material/mooney_rivlin.h"
 #include "material/muscle.h"
 #include "material/null.h"
@@ -30,11 +31,12 @@ struct MaterialList {
   static constexpr int size = sizeof...(Laws);
 };
 
-using Materials = MaterialList<ElasticLaw, ElasticFluid, PlasticKinematic, Viscoelastic, Null,
-                               PiecewiseLinearPlasticity, MooneyRivlin, LowDensityFoam,
-                               ViscousLowDensityFoam, KelvinMaxwell, ViscousFoam, CrushableFoam,
-                               Ogden, ViscousOgden, Muscle, HyperelasticRubber,
-                               PlasticityCompressionTension, ViscousPlasticityCompressionTension>;
+using Materials =
+    MaterialList<ElasticLaw, ElasticFluid, PlasticKinematic, Viscoelastic, Null,
+                 PiecewiseLinearPlasticity, MooneyRivlin, LowDensityFoam, ViscousLowDensityFoam,
+                 KelvinMaxwell, ViscousFoam, CrushableFoam, Ogden, ViscousOgden, Muscle,
+                 HyperelasticRubber, PlasticityCompressionTension,
+                 ViscousPlasticityCompressionTension, ModifiedPiecewiseLinearPlasticity>;
 
 // carries a law's type through a generic lambda
 template <class M>

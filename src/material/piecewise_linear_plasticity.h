@@ -1,9 +1,9 @@
 #pragma once
 // Von Mises plasticity with an arbitrary hardening curve and rate effects
 // (*MAT_PIECEWISE_LINEAR_PLASTICITY, 024).
-//   Y = S(ep) f(r)            f = 1 + (r/C)^(1/P), or the curve LCSR (1) Y = S(ep) + S0 (r/C)^(1/P)
-//   with VP = 1; S0 = SIGY, or S(0) where SIGY is blank                         (2) Y = table(ep,
-//   r)          where LCSS is a table                                                        (3)
+//   Y = S(ep) f(r)             f = 1 + (r/C)^(1/P), or the curve LCSR                      (1)
+//   Y = S(ep) + S0 (r/C)^(1/P) with VP = 1; S0 = SIGY, or S(0) where SIGY is blank         (2)
+//   Y = table(ep, r)           where LCSS is a table                                       (3)
 // S: curve LCSS, or points EPS/ES, or SIGY + Ep ep with Ep = E ETAN / (E - ETAN).
 // r: VP = 0: sqrt(D:D); VP = -1: effective deviatoric rate sqrt(2/3 D':D'); VP = 1: rate of ep.
 // A point fails where ep > FAIL. Return mapping: j2.h.

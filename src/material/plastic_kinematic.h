@@ -1,13 +1,13 @@
 #pragma once
 // Von Mises plasticity with isotropic, kinematic or mixed linear hardening (*MAT_PLASTIC_KINEMATIC,
 // 003).
-//   Y  = (1 + (r/C)^(1/P)) (SIGY + BETA Ep ep),   Ep = E ETAN / (E - ETAN) (1) da = 2/3 (1 - BETA)
-//   Ep d(plastic strain)                                                               (2)
+//   Y  = (1 + (r/C)^(1/P)) (SIGY + BETA Ep ep),   Ep = E ETAN / (E - ETAN)                 (1)
+//   da = 2/3 (1 - BETA) Ep d(plastic strain)                                               (2)
 // r: rate of deformation sqrt(D:D) (VP = 0). VP = 1: Y = SIGY + BETA Ep ep + SIGY (r/C)^(1/P), r
 // the rate of ep. C = SRC, P = SRP; C = 0: no rate effect. A point fails where ep > FS. Return
 // mapping: j2.h. In shells transverse shear is elastic and outside the yield condition, as in
-// published LS-DYNA results (docs/theory/elements/shell.md). Source: Krieg and Key 1976; Cowper and
-// Symonds 1957.
+// published LS-DYNA results (docs/theory/elements/shell.md).
+// Source: Krieg and Key 1976; Cowper and Symonds 1957.
 #include "material/j2.h"
 
 namespace fabrica {

@@ -75,6 +75,34 @@ TEST_CASE("003 and 024: Cowper-Symonds") {
   check_rate<PiecewiseLinearPlasticity>(deviatoric, 100);
 }
 
+// pulled by e_xx and e_yy and turned in its plane, the layer's greater principal strain is known
+TEST_CASE("123: flows as 024 and fails at a strain in the plane") {
+  TestParameters p{{"ro", 7.8e-6}, {"e", 210}, {"pr", .3}, {"sigy", .3}, {"etan", 2.1}};
+  const auto plain = PiecewiseLinearPlasticity::from(p);
+  p.set("epsmaj", 0.0201).set("numint", 1);
+  const auto m = ModifiedPiecewiseLinearPlasticity::from(p);
+  CHECK(!plain.may_fail());
+  CHECK(m.may_fail());
+  CHECK(m.layers_to_fail() == 1);
+  auto state = fresh_state<ModifiedPiecewiseLinearPlasticity>();
+  auto other = fresh_state<PiecewiseLinearPlasticity>();
+  Sym3<double> s = no_stress(), t = s;
+  // principal strains a, -a / 2 with a = 1e-3 a step, 30 degrees from the axes
+  const double a = 1e-3, c = std::cos(M_PI / 6), d = std::sin(M_PI / 6);
+  const Sym3<double> e{a * (c * c - d * d / 2), a * (d * d - c * c / 2), 0, 1.5 * a * c * d, 0, 0};
+  for (int k = 1; k <= 25; ++k) {
+    auto point = fresh_point(m, 1), beside = fresh_point(plain, 1);
+    double dzz = 0, zz = 0;
+    s = m.plane_stress(s, e, point, state, dzz);
+    t = plain.plane_stress(t, e, beside, other, zz);
+    CHECK(largest(s - t) == 0);
+    CHECK(dzz == zz);
+    CHECK((point.alive == 0) == (k > 20));
+  }
+  CHECK_THROWS_WITH(ModifiedPiecewiseLinearPlasticity::from(p.set("numint", -50)),
+                    doctest::Contains("NUMINT"));
+}
+
 TEST_CASE("024: yield stress from a curve, from points, from a table and with a rate curve") {
   auto flow_stress = [](const TestParameters& p, double strain, double dt) {
     const auto m = PiecewiseLinearPlasticity::from(p);

@@ -11,6 +11,9 @@
 // (3) is not bounded by (1): parallel to it, it adds rate effects to the elastic and to the plastic
 // range. A point fails where ep > FAIL. Return mapping: j2.h; recursion of (3): relaxation.h.
 // Source: LS-DYNA manual (public), MAT_124; Simo and Hughes, Computational Inelasticity, ch. 3.
+#include <stdexcept>
+#include <string>
+
 #include "material/j2.h"
 #include "material/relaxation.h"
 

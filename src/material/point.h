@@ -2,25 +2,30 @@
 // The contract between elements and material laws.
 //
 // A law is a plain struct of parameters (Real, CurveView) with
-//   static constexpr std::string_view keyword      canonical keyword, "MAT_ELASTIC"
-//   static constexpr unsigned families             where it may be used: in_solids | in_shells |
-//   in_beams static Law from(const Parameters&)             reads the card Elastic elastic() const
-//   density and initial elastic moduli, for mass, time step, contact template <class L> struct
-//   State                history of one point: only L and Sym3<L> members, all zero at
-//                                                  the start; the first `rotated` Sym3 members turn
-//                                                  with the material and are rotated by the element
-//                                                  before the call
-//   static constexpr int rotated                   how many
-//   static constexpr bool total                    false: rate law, true: law of the deformation
-//   gradient static constexpr bool can_fail                 true: may set Point::alive to 0; then
-//   bool may_fail() const                          whether it does so with these parameters
+//   keyword    canonical keyword, "MAT_ELASTIC"
+//   families   where it may be used: in_solids | in_shells | in_beams
+//   rotated    how many members of its State turn with the material, see there
+//   total      false: rate law, true: law of the deformation gradient
+//   can_fail   true: may set Point::alive to 0; then bool may_fail() const tells whether it does so
+//              with these parameters
+// all static constexpr, and
+//   static Law from(const Parameters&)   reads the card
+//   Elastic elastic() const              density and initial elastic moduli, for mass, time step,
+//                                        contact
+//   template <class L> struct State      history of one point: only L and Sym3<L> members, all zero
+//                                        at the start; the first `rotated` Sym3 members turn with
+//                                        the material and are rotated by the element before the
+//                                        call
+//   int layers_to_fail() const           optional, of laws of shells: how many layers of an
+//   in-plane
+//                                        point take the others along; 0: each fails alone
 // and one of
-//   Sym3<L> stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point, State<L>& state)
-//   const  (rate)
-//       old: Cauchy stress at t(n-1), already rotated to t(n); strain: D dt (tensor components);
-//       returns Cauchy stress at t(n)
-//   Sym3<L> stress(const Mat3<L>& F, Point<L>& point, State<L>& state) const (total)
-//       F: deformation gradient, with det F = point.volume_ratio; returns Cauchy stress
+//   Sym3<L> stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>&, State<L>&) const
+//       a rate law. old: Cauchy stress at t(n-1), already rotated to t(n); strain: D dt (tensor
+//       components); returns Cauchy stress at t(n)
+//   Sym3<L> stress(const Mat3<L>& F, Point<L>&, State<L>&) const
+//       a total law. F: deformation gradient, with det F = point.volume_ratio; returns Cauchy
+//       stress
 // Kernels: no data-dependent branch except select(), no allocation, no global state.
 #include <string_view>
 
