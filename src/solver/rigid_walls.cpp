@@ -207,12 +207,16 @@ void RigidWalls::find_near(Side& side, double reach) {
     if (!((side.clearance[c] -= reach) > 0)) near_.push_back(int(c));
 }
 
+template <class Visit>
+void RigidWalls::for_near(Team& team, const Visit& visit) const {
+  team.for_each(int(near_.size()), [&](int k, int) { visit(near_[std::size_t(k)]); });
+}
+
 void RigidWalls::detect(Wall& wall, const WallGeometry& g, State& state, Team& team, double speed) {
   const double reach = state.dt * (speed + norm(wall.velocity));
   Side& side = wall.free;
   find_near(side, reach);
-  team.for_each(int(near_.size()), [&](int k, int) {
-    const int c = near_[k];
+  for_near(team, [&](int c) {
     hits_[c].clear();
     sums_[c] = {};
     double clearance = 1e300;
@@ -240,8 +244,7 @@ void RigidWalls::push(Wall& wall, State& state, Team& team, double old_speed) {
   const RigidWall& w = model_.rigid_walls[wall.index];
   // a heavy wall took up momentum: all touching nodes get its new velocity
   const double gain = dot(wall.velocity, wall.geometry.normal) - old_speed;
-  team.for_each(int(near_.size()), [&](int k, int) {
-    const int c = near_[k];
+  for_near(team, [&](int c) {
     Sums& s = sums_[c];
     for (const Hit& h : hits_[c]) {
       NodeMotion& node = state.nodes[h.node];
@@ -306,8 +309,7 @@ void RigidWalls::penalty(Wall& wall, State& state, Team& team, double speed) {
   const WallGeometry g = now(wall);
   Side& side = wall.rigid;
   find_near(side, reach);
-  team.for_each(int(near_.size()), [&](int k, int) {
-    const int c = near_[k];
+  for_near(team, [&](int c) {
     Sums& s = sums_[c];
     s = {};
     double clearance = 1e300;

@@ -91,6 +91,8 @@ class RigidWalls {
   bool find_behind(const Wall& wall, const WallGeometry& g, const State& state, int node,
                    Hit& hit) const;
   void find_near(Side& side, double reach);
+  template <class Visit>
+  void for_near(Team& team, const Visit& visit) const;
   void detect(Wall& wall, const WallGeometry& g, State& state, Team& team, double speed);
   void push(Wall& wall, State& state, Team& team, double old_speed);
   void penalty(Wall& wall, State& state, Team& team, double speed);
