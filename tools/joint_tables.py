@@ -92,6 +92,16 @@ WOUND = {"RCL": 31.9, "annular_anterior": 15.5}
 # straight way between its ends where the range of flexion ends, 28.5 mm more than in standing
 LOOSE = {"capsule_inferior": 66.9}
 LOOSE_SOURCE = "; loose below (Gray's Anatomy): taut from the end of the range of flexion on, estimated"
+# The posterior cruciate ligament. The source's points, snapped to our bone, lie 12 mm too far up in the notch and 11 mm too
+# high on the tibia: 40 % shorter when the knee bends on its path, never taut. On the femur the centres of the bundles are 8 and
+# 11.9 mm from the articular surface in front along the roof of the notch, here from (-2.6, -423) to (6, -441) in the plane, and
+# 4.7 and 10.9 mm below it; on the tibia they are 8.4 and 14.5 mm below the articular plane. Lengths on the path of our knee at
+# 0, 30, 60, 90, 120 degrees: 30.3 28.7 31.3 33.8 36.2 and 36.0 30.6 30.8 33.0 36.8. The front bundle is lax in extension, taut in
+# flexion, the rear one hardly ever taut when a knee bends passively (Hosseini Nasab 2016): without force up to 60 degrees, and as
+# long as when standing. Ends [mm], reference length [mm]
+PCL = {"PCLal": ((-1.7, 6.5, -435.9), (-21.4, -9.9, 381.0), 31.3), "PCLpm": ((-9.0, 10.0, -435.1), (-22.2, -9.1, 375.0), 36.0)}
+PCL_SOURCE = ("N/strain of Lenhart et al. 2015 (opensim-jam); on the femur: systematic review 10.1016/j.arthro.2014.07.004 (abstract), on the "
+              "tibia: Liu 2009 Acta Anat Sin 40:1008 (abstract), both on our bones; length: tools/joint_tables.py, estimated")
 ADDED += [
     ["annular_posterior", "elbow", "R", "ulna", "ulna_R", -5.0, -10.2, -31.0, "radius", "radius_R", *HEAD, "around", 13.6, 10,
      30, "", "", "", "", 1, 0, "", "as annular_anterior; behind the radial notch of our ulna", "estimated"],
@@ -168,6 +178,10 @@ def ligaments(folder):
             attach, k1, source = "muscle", 10.0, "tendon in series with a passive muscle; estimated"
         if row["name"] in LOOSE and row["region"] == "hip":
             length, source = LOOSE[row["name"]], source + LOOSE_SOURCE
+        if row["name"] in PCL:
+            start, end, length = PCL[row["name"]]
+            ends, slack, source = [*start, *end], "", PCL_SOURCE
+            k1 = float(row["stiffness"]) / length
         if row["name"] in WOUND:
             attach, length, ends[3:] = "around", WOUND[row["name"]], HEAD
         if row["name"] == "inguinal":
