@@ -5,8 +5,8 @@ the signed distance f of each slice's contours in its plane, f = (1 - t) f_a + t
 
     e_i = (area between its own outline and that of f = 0) / (length of its own outline)   [mm],
 
-the mean distance of the two outlines. From the two end slices on, the slice with the largest error is kept until none is above
-the bound; then each slice that is not needed for that any more is let go again.
+the mean distance of the two outlines. From the slices that are given on, or from the two at the ends, the slice with the largest
+error is kept until none is above the bound; then each added slice that is not needed for that any more is let go again.
 """
 import numpy as np
 
@@ -63,12 +63,13 @@ class Stack:
     def largest(self, keep):
         return max(self.errors(keep), default=(0.0, None))
 
-    def choice(self, bound):
-        """slices to keep, so that none left out is off by more than bound [mm]"""
-        keep = [0, len(self.heights) - 1]
+    def choice(self, bound, given=None):
+        """slices to keep, those given among them, so that none left out is off by more than bound [mm]"""
+        given = given or [0, len(self.heights) - 1]
+        keep = list(given)
         while self.largest(keep)[0] > bound:
             keep = sorted(keep + [self.largest(keep)[1]])
-        for i in keep[1:-1]:
+        for i in sorted(set(keep) - set(given)):
             fewer = [k for k in keep if k != i]
             if self.largest(fewer)[0] <= bound:
                 keep = fewer

@@ -5,7 +5,8 @@ FOLDER holds the full tables (index.csv, *_stack.csv, *_loft.csv, skull_vault_sh
 Shipped is the thinned form: contours keep at most 6 harmonics, slices and stations are taken 1.6 spacings apart
 (the nearest ones that exist, first and last always). Vertebrae change within a slice at their endplates and at the roots of
 arch and processes: of them so many slices are kept, where the outline changes most, that no slice left out is off by more
-than 0.5 mm in the mean (slice_choice.py). So no surface can be recovered finer than 0.5-0.75 mm. Printed is, for each
+than 0.5 mm in the mean (slice_choice.py). Bones of the arm keep slices beside those 1.6 spacings apart by the same rule: a joint's
+face lies between two slices, and half of it goes with one that is left out. So no surface can be recovered finer than 0.5-0.75 mm. Printed is, for each
 stack, how many slices stay and the largest error of those left out; numpy is needed for that.
 Only what the mesh makers read is written. The result depends on the input alone.
 
@@ -31,6 +32,7 @@ SPACING = 1.6
 # stacks whose slices are chosen by what they change, and the largest error of a slice left out [mm]
 CHOSEN = re.compile(r"[CTL]\d+")
 BOUND = 0.5
+ADDED = re.compile(r"humerus|radius|ulna")  # stacks that keep more slices than those 1.6 spacings apart, by the same bound
 VAULT_DEGREE = 10  # a smooth fit; a lower degree leaves waves of 1.5 mm on the crown
 # the slices of the skull are 4.9 mm apart: its table is already coarser (0.7 mm) than the thinned form of the others
 WHOLE = {"skull"}
@@ -87,7 +89,7 @@ def slices_kept(bone, rows, heights):
     if bone in WHOLE:
         return range(len(heights))
     stack, even = stack_of(rows, heights), kept(len(heights))
-    keep = stack.choice(BOUND) if CHOSEN.fullmatch(bone) else even
+    keep = stack.choice(BOUND) if CHOSEN.fullmatch(bone) else stack.choice(BOUND, even) if ADDED.fullmatch(bone) else even
     line = f"{bone}: {len(keep)} of {len(heights)} slices, largest error of the others {stack.largest(keep)[0]:.2f} mm"
     if keep is not even:
         line += f" (1.6 spacings apart: {len(even)} slices, {stack.largest(even)[0]:.2f} mm)"
