@@ -9,6 +9,8 @@ FOLDER holds joints_ligaments.csv and bones/discs.csv. What changes on the way:
   the moduli of PMC5592017 Table 2, whose other moduli are the same, and 30 mm2 a side;
 - capsules of the facets lose their attachments: the source took the tips of wrong processes at several levels, the
   program finds the joint on the bones themselves;
+- lengths follow the bones that data/anatomy/assembly.csv has elsewhere than the full table (radius and hand): each changes as
+  the distance of its ends does;
 - strands: as many as the ligament is broad; discs: the height that literature states for the level.
 """
 import csv
@@ -121,6 +123,32 @@ def table(path):
         return list(csv.DictReader(line for line in file if not line.startswith("#")))
 
 
+def frames(path, unit):
+    """{frame: (t, R)} of the standing rows of a table of placements, t in mm"""
+    result = {}
+    for row in table(path):
+        if row["posture"] == "stand":
+            values = [float(v) for v in list(row.values())[2:14]]
+            result[row["frame"].removesuffix("_R")] = [unit * v for v in values[:3]], values[3:]
+    return result
+
+
+def placed(frame, point):
+    t, r = frame
+    return [t[i] + sum(r[3 * i + k] * float(point[k]) for k in range(3)) for i in range(3)]
+
+
+def moved(row, before, after):
+    """row of the ligament table with its length changed as the distance of its ends changes between two placements"""
+    ends = [(row[i].removesuffix("_R"), row[i + 1:i + 4]) for i in (4, 9)]
+    if any(frame not in before or frame not in after for frame, _ in ends):
+        return row
+    old, new = (math.dist(*(placed(frames[frame], point) for frame, point in ends)) for frames in (before, after))
+    if abs(new - old) < 0.05:  # digits of the tables
+        return row
+    return [*row[:14], f"{float(row[14]) + new - old:.1f}", *row[15:]]
+
+
 def breadth(name):
     for key, value in BROAD.items():
         if name.startswith(key) and (key not in ("CL", "SC", "LF") or name[len(key):len(key) + 1] in ("_", "")):
@@ -224,6 +252,7 @@ def main():
     folder, target = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
     notice = ("# Attachments and sizes measured from BodyParts3D, (c) The Database Center for Life Science, CC BY-SA 4.0;"
               " changes: scaled per region, reduced to points. See LICENSE in data/anatomy.\n")
+    before, after = frames(folder / "assembly.csv", 1000), frames(target.parent / "assembly.csv", 1)
     write(target / "ligaments.csv", notice +
           "# Ends in the frames of the bones [mm], right side or midline; attach around:"
           " end 2 is on the axis of a head that the ligament winds around. length: reference, of strains. k1 to strain1, k2"
@@ -232,7 +261,7 @@ def main():
           " of spread. slack: length without force, where the source states one.\n",
           ["name", "region", "side", "bone1", "frame1", "x1", "y1", "z1", "bone2", "frame2", "x2", "y2", "z2", "attach",
            "length", "area", "k1", "strain1", "k2", "toe", "toe_force", "strands", "spread", "slack", "source", "confidence"],
-          [*ligaments(folder), *ADDED])
+          [moved(row, before, after) for row in [*ligaments(folder), *ADDED]])
     write(target / "discs.csv", notice +
           "# Centre and normal in the standing assembly [mm], global; width along y, depth along x; height: measured mean,"
           " height_am50: to aim at.\n",

@@ -182,6 +182,7 @@ const std::vector<BoneRecipe>& bone_recipes() {
         }
       r.symmetric = table.text(row, "symmetric") == "yes";
       r.exact_distances = table.text(row, "distances") == "exact";
+      r.halfway = table.text(row, "distances") == "halfway";
       if (!table.text(row, "euler").empty()) r.euler = int(table.number(row, "euler"));
       if (!table.text(row, "open_euler").empty())
         r.open_euler = int(table.number(row, "open_euler"));
@@ -218,7 +219,8 @@ BoneShape bone_shape(const std::string& name, double grid, double margin) {
     loft->fit_ends(index.low, index.high, index.volume);
   else if (loft && index.volume > 0)
     loft->match_volume(index.volume);
-  BoneShape shape{stacked ? DistanceField::of_slices(read_slices(name), index.axes, grid, margin)
+  BoneShape shape{stacked ? DistanceField::of_slices(read_slices(name), index.axes, grid, margin,
+                                                     bone_recipe(name).halfway)
                           : DistanceField::of_triangles(loft->surface(36, 3.0), grid, margin),
                   loft,
                   index.volume,

@@ -25,6 +25,7 @@ struct BoneRecipe {
   std::optional<int> open_euler;  // of the boundary with the foramina open that most grids close
   bool symmetric = false;         // a bone of the midline: made its own mirror image
   bool exact_distances = false;   // the field of that is made a distance again
+  bool halfway = false;           // what ends between two slices ends halfway
   double spacing(Resolution r) const { return edge[std::size_t(r)]; }
 };
 

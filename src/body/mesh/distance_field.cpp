@@ -184,7 +184,7 @@ DistanceField::DistanceField(const Box& box, const Axes& axes, double spacing, d
 }
 
 DistanceField DistanceField::of_slices(const std::vector<Slice>& slices, const Axes& axes,
-                                       double spacing, double margin) {
+                                       double spacing, double margin, bool halfway) {
   Box box{{1e9, 1e9, slices.front().height}, {-1e9, -1e9, slices.back().height}};
   for (const Slice& slice : slices)
     for (const auto& loop : slice.loops)
@@ -217,10 +217,13 @@ DistanceField DistanceField::of_slices(const std::vector<Slice>& slices, const A
       continue;
     }
     while (slices[above].height < z) ++above;
-    const double t =
-        (z - slices[above - 1].height) / (slices[above].height - slices[above - 1].height);
+    const float apart = float(slices[above].height - slices[above - 1].height);
+    const double t = (z - slices[above - 1].height) / apart;
     const auto &a = distance[above - 1], &b = distance[above];
-    for (int i = 0; i < plane; ++i) out[i] = float((1 - t) * a[i] + t * b[i]);
+    for (int i = 0; i < plane; ++i) {
+      const float most = halfway && (a[i] < 0) != (b[i] < 0) ? apart : 1e9f;
+      out[i] = float((1 - t) * std::clamp(a[i], -most, most) + t * std::clamp(b[i], -most, most));
+    }
   }
   field.divide_by_gradient();
   return field;

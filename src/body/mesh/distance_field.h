@@ -2,10 +2,13 @@
 // The signed distance of a bone's surface on a grid: negative inside, zero on the surface [mm].
 //
 // Of parallel slices: in each slice the 2-D signed distance of all its contours, linear between
-// neighbouring slices (shape-based interpolation: Raya, Udupa 1990); beyond an end slice phi grows
-// by r / 0.8 mm per mm, r the depth of the end contour, so that the surface closes within 0.8 mm.
-// Each value is then divided by the norm of its own gradient, because a distance measured in slices
-// is too long over flat tops. Of triangles: the exact distance in a band.
+// neighbouring slices (shape-based interpolation: Raya, Udupa 1990). A bulge that ends between two
+// slices h apart, r deep in one and d away from the contours of the other, ends r h / (r + d) from
+// the first, near it where what else there is lies far off. Halfway: where two slices differ in
+// sign, both count h at most, so that a deep bulge ends h / 2 beyond its last slice. Beyond an end
+// slice phi grows by r / 0.8 mm per mm, r the depth of the end contour, so that the surface closes
+// within 0.8 mm. Each value is then divided by the norm of its own gradient, because a distance
+// measured in slices is too long over flat tops. Of triangles: the exact distance in a band.
 #include <array>
 #include <vector>
 
@@ -41,9 +44,10 @@ Point closest_on_triangle(const Point& p, const Point& a, const Point& b, const 
 
 class DistanceField {
  public:
-  // slices in rising height; spacing of the grid and margin around the contours in mm
+  // slices in rising height; spacing of the grid and margin around the contours in mm; halfway: as
+  // in the head of this file
   static DistanceField of_slices(const std::vector<Slice>& slices, const Axes& axes, double spacing,
-                                 double margin);
+                                 double margin, bool halfway = false);
   static DistanceField of_triangles(const TriangleSurface& surface, double spacing, double margin);
   // any function of a point, negative inside
   template <class F>

@@ -55,3 +55,33 @@ TEST_CASE("a flat end along the slices is as far as it is") {
   for (const double z : {-1.5, -2.5, -3.5})
     CHECK(std::abs(field.value({0, 0, z}) - (-30.0 / 36 - z)) < 0.5 * spacing);
 }
+
+// A ball of radius 11 beside a rod, slices 5 mm apart, the first within the ball e mm above its
+// end. Between that slice and the next the end is anywhere: halfway is off by half their distance
+// at most, and by what the grid reads. By the distance to the rod, 14 mm, it would end at the
+// first.
+TEST_CASE("a bulge that ends between two slices ends within half their distance of its end") {
+  constexpr double spacing = 0.5, apart = 5, radius = 11;
+  const auto circle = [](double x, double r) {
+    std::vector<std::array<double, 2>> loop;
+    for (int i = 0; i < 72; ++i) {
+      const double t = 2 * std::numbers::pi * i / 72;
+      loop.push_back({x + r * std::cos(t), r * std::sin(t)});
+    }
+    return loop;
+  };
+  for (const double e : {0.5, 2.0, 3.5, 4.9}) {
+    CAPTURE(e);
+    std::vector<Slice> slices;
+    for (double height = e - 2 * apart; height < radius; height += apart) {
+      slices.push_back({height, {circle(-30, 4)}});
+      if (height > 0) slices.back().loops.push_back(circle(0, std::sqrt(height * (22 - height))));
+    }
+    const DistanceField field = DistanceField::of_slices(slices, Axes{}, spacing, 4, true);
+    double end = e;  // lowest point of the ball on its axis, which lies at z = 0
+    while (field.value({0, 0, end}) < 0) end -= 0.05;
+    CHECK(std::abs(end) < apart / 2 + spacing / 2);
+    const DistanceField linear = DistanceField::of_slices(slices, Axes{}, spacing, 4);
+    if (e > 4) CHECK(linear.value({0, 0, (apart + spacing) / 2}) > 0);
+  }
+}
