@@ -9,7 +9,7 @@ FOLDER holds joints_ligaments.csv and bones/discs.csv. What changes on the way:
   the moduli of PMC5592017 Table 2, whose other moduli are the same, and 30 mm2 a side;
 - capsules of the facets lose their attachments: the source took the tips of wrong processes at several levels, the
   program finds the joint on the bones themselves;
-- lengths follow the bones that data/anatomy/assembly.csv has elsewhere than the full table (radius and hand): each changes as
+- lengths follow the bones that data/anatomy/assembly.csv has elsewhere than the full table (forearm and hand): each changes as
   the distance of its ends does;
 - strands: as many as the ligament is broad; discs: the height that literature states for the level.
 """
@@ -90,10 +90,14 @@ ADDED += [[f"interosseous_membrane_leg_{z}", "leg", "R", "tibia", "tibia_R", 0.0
 # in both. They pull at its axis, 7 mm below the centre of the head: place [mm] in the radius, length [mm] from there
 HEAD = (0.06, 1.1, -6.94)
 WOUND = {"RCL": 31.9, "annular_anterior": 15.5}
-# The capsule of the hip is loose behind and below (Gray's Anatomy, in front and above thick): its lower part is as long as the
-# straight way between its ends where the range of flexion ends, 28.5 mm more than in standing
-LOOSE = {"capsule_inferior": 66.9}
-LOOSE_SOURCE = "; loose below (Gray's Anatomy): taut from the end of the range of flexion on, estimated"
+# Parts that are loose where the body stands are as long as the straight way between their ends where they become taut. The
+# capsule of the hip is loose behind and below (Gray's Anatomy, in front and above thick): at the end of the range of flexion,
+# 28.5 mm more than in standing. The posterior part of the medial ligament of the elbow gets longer by 9 mm from 60 to 120
+# degrees of flexion (ours by 9.5; Morrey and An 1985) and restrains the elbow only near 130 (Floris 1998): at 120 degrees.
+LOOSE = {
+    ("hip", "capsule_inferior"): (66.9, "; loose below (Gray's Anatomy): taut from the end of the range of flexion on, estimated"),
+    ("elbow", "MCL_posterior"): (39.3, "; longer by 9 mm from 60 to 120 degrees (Morrey and An 1985 Clin Orthop 201:84, abstract): "
+                                       "taut from 120 on, estimated")}
 # The posterior cruciate ligament. The source's points, snapped to our bone, lie 12 mm too far up in the notch and 11 mm too
 # high on the tibia: 40 % shorter when the knee bends on its path, never taut. On the femur the centres of the bundles are 8 and
 # 11.9 mm from the articular surface in front along the roof of the notch, here from (-2.6, -423) to (6, -441) in the plane, and
@@ -104,6 +108,12 @@ LOOSE_SOURCE = "; loose below (Gray's Anatomy): taut from the end of the range o
 PCL = {"PCLal": ((-1.7, 6.5, -435.9), (-21.4, -9.9, 381.0), 31.3), "PCLpm": ((-9.0, 10.0, -435.1), (-22.2, -9.1, 375.0), 36.0)}
 PCL_SOURCE = ("N/strain of Lenhart et al. 2015 (opensim-jam); on the femur: systematic review 10.1016/j.arthro.2014.07.004 (abstract), on the "
               "tibia: Liu 2009 Acta Anat Sin 40:1008 (abstract), both on our bones; length: tools/joint_tables.py, estimated")
+# The capsule of the elbow holds 85 % of a pull in extension and 8 % at 90 degrees of flexion (Morrey and An 1983, abstract): it
+# lies in front, from above the fossae of the humerus to the coronoid process and the annular ligament around the radius, which
+# brings it to the ulna too
+ADDED += [["elbow_capsule", "elbow", "R", "humerus", "humerus_R", 7.4, 0.0, -265.0, "ulna", "ulna_R", 12.4, 2.2, -26.0, "points",
+           43.6, 20, 70, "", "", "", "", 3, 20, "",
+           "in front (Morrey and An 1983 Am J Sports Med 11:315, abstract); stiffness and breadth estimated", "estimated"]]
 ADDED += [
     ["annular_posterior", "elbow", "R", "ulna", "ulna_R", -5.0, -10.2, -31.0, "radius", "radius_R", *HEAD, "around", 13.6, 10,
      30, "", "", "", "", 1, 0, "", "as annular_anterior; behind the radial notch of our ulna", "estimated"],
@@ -140,6 +150,8 @@ def placed(frame, point):
 
 def moved(row, before, after):
     """row of the ligament table with its length changed as the distance of its ends changes between two placements"""
+    if (row[1], row[0]) in LOOSE:
+        return row
     ends = [(row[i].removesuffix("_R"), row[i + 1:i + 4]) for i in (4, 9)]
     if any(frame not in before or frame not in after for frame, _ in ends):
         return row
@@ -204,8 +216,9 @@ def ligaments(folder):
         attach = "facet" if row["name"].startswith("CL_") else "points"
         if row["name"] in ("achilles_tendon", "quadriceps_tendon_insertion"):
             attach, k1, source = "muscle", 10.0, "tendon in series with a passive muscle; estimated"
-        if row["name"] in LOOSE and row["region"] == "hip":
-            length, source = LOOSE[row["name"]], source + LOOSE_SOURCE
+        if (row["region"], row["name"]) in LOOSE:
+            length, why = LOOSE[row["region"], row["name"]]
+            source += why
         if row["name"] in PCL:
             start, end, length = PCL[row["name"]]
             ends, slack, source = [*start, *end], "", PCL_SOURCE
