@@ -110,10 +110,17 @@ PCL_SOURCE = ("N/strain of Lenhart et al. 2015 (opensim-jam); on the femur: syst
               "tibia: Liu 2009 Acta Anat Sin 40:1008 (abstract), both on our bones; length: tools/joint_tables.py, estimated")
 # The capsule of the elbow holds 85 % of a pull in extension and 8 % at 90 degrees of flexion (Morrey and An 1983, abstract): it
 # lies in front, from above the fossae of the humerus to the coronoid process and the annular ligament around the radius, which
-# brings it to the ulna too
-ADDED += [["elbow_capsule", "elbow", "R", "humerus", "humerus_R", 7.4, 0.0, -265.0, "ulna", "ulna_R", 12.4, 2.2, -26.0, "points",
-           43.6, 20, 70, "", "", "", "", 3, 20, "",
-           "in front (Morrey and An 1983 Am J Sports Med 11:315, abstract); stiffness and breadth estimated", "estimated"]]
+# brings it to the ulna too. The collateral ligaments fan out from the axis of flexion (the lateral one keeps its length: Morrey
+# and An 1985) to both edges of the notch; the fans pull at the axis, in the middle of the trochlea, and hold the ulna in at each angle.
+TROCHLEA = (7.0, 1.0, -290.9)
+ADDED += [
+    ["elbow_capsule", "elbow", "R", "humerus", "humerus_R", 7.4, 0.0, -265.0, "ulna", "ulna_R", 12.4, 2.2, -26.0, "points", 43.6, 20,
+     70, "", "", "", "", 3, 20, "", "in front (Morrey and An 1983 Am J Sports Med 11:315, abstract); stiffness and breadth estimated",
+     "estimated"],
+    *[[f"elbow_fan_{name}", "elbow", "R", "ulna", "ulna_R", *edge, "humerus", "humerus_R", *TROCHLEA, "around", length, 10, 35, "", "",
+       "", "", 1, 0, "", "fan of the collateral ligaments from the axis (Morrey and An 1985 Clin Orthop 201:84, abstract) to the edge "
+       "of the notch; stiffness estimated", "estimated"]
+      for name, edge, length in (("coronoid", (12.4, 2.2, -26.0), 19.8), ("olecranon", (-4.5, 2.0, 0.0), 12.6))]]
 ADDED += [
     ["annular_posterior", "elbow", "R", "ulna", "ulna_R", -5.0, -10.2, -31.0, "radius", "radius_R", *HEAD, "around", 13.6, 10,
      30, "", "", "", "", 1, 0, "", "as annular_anterior; behind the radial notch of our ulna", "estimated"],
