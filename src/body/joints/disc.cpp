@@ -36,13 +36,35 @@ constexpr double toe_outer = 0.041, toe_inner = 0.073, exponent_outer = 2.5, exp
 constexpr double farthest_around = 1.0 / 6;  // of the way around, that a fibre spans
 
 struct DiscGrid {
-  int across, rings, layers;  // bricks across the nucleus, in the annulus, along the height
+  int deep, wide;     // bricks of the nucleus from behind to the front, from right to left
+  int rings, layers;  // bricks in the annulus, along the height
 };
 
-DiscGrid grid_of(Resolution resolution) {
-  if (resolution == Resolution::coarse) return {4, 2, 2};
-  if (resolution == Resolution::standard) return {6, 3, 3};
-  return {8, 4, 4};
+// of the way from the innermost ring of the annulus to the outermost
+double way_out(int ring, int rings) { return rings == 1 ? 1 : double(ring - 1) / (rings - 1); }
+
+// [degrees] to the plane of the disc, of the fibres of a ring
+double fibre_angle(int ring, int rings) {
+  const double t = way_out(ring, rings);
+  return (1 - t) * angle_inner + t * angle_outer;
+}
+
+// As many columns as put the diagonals of the rings' outer faces at the angles of their fibres, in
+// the mean: rho tan(angle) = n h / (layers * perimeter).
+DiscGrid grid_of(Resolution resolution, const DiscRow& row) {
+  const int layers = resolution == Resolution::coarse     ? 2
+                     : resolution == Resolution::standard ? 3
+                                                          : 4;
+  const int rings = layers;
+  double slope = 0;
+  for (int ring = 1; ring <= rings; ++ring) {
+    const double rho = nucleus_radius + (1 - nucleus_radius) * ring / rings;
+    slope += rho * std::tan(fibre_angle(ring, rings) * M_PI / 180) / rings;
+  }
+  const double ratio = row.depth / row.width;  // of an ellipse, to second order in it
+  const double perimeter = 2 * std::sqrt(M_PI * row.area * 0.5 * (ratio + 1 / ratio));
+  const int half = std::max(4, int(std::lround(0.5 * slope * layers * perimeter / row.wanted)));
+  return {half / 2, half - half / 2, rings, layers};
 }
 
 // a place of the section, forward and left, of a point (a, b) of the square [-1, 1]^2; towards its
@@ -70,7 +92,7 @@ class DiscMaker {
         row_(row),
         between_(between),
         space_(bones, row, DiscSpace::Section::table),
-        grid_(grid_of(bones[std::size_t(row.upper)].mesh.resolution)) {
+        grid_(grid_of(bones[std::size_t(row.upper)].mesh.resolution, row)) {
     space_.limit_mean_height(row.wanted);
   }
   DiscReport make();
@@ -114,26 +136,25 @@ std::vector<Point> DiscMaker::points(double forward, double left) const {
 // the edge of the square, counter-clockwise from its corner (1, -1)
 std::vector<std::array<double, 2>> DiscMaker::rim() const {
   std::vector<std::array<double, 2>> edge;
-  const int m = grid_.across;
-  const auto at = [&](int i) { return 2.0 * i / m - 1; };
-  for (int i = 0; i < m; ++i) edge.push_back({1, at(i)});
-  for (int i = 0; i < m; ++i) edge.push_back({-at(i), 1});
-  for (int i = 0; i < m; ++i) edge.push_back({-1, -at(i)});
-  for (int i = 0; i < m; ++i) edge.push_back({at(i), -1});
+  const int m = grid_.deep, n = grid_.wide;
+  for (int i = 0; i < n; ++i) edge.push_back({1, 2.0 * i / n - 1});
+  for (int i = 0; i < m; ++i) edge.push_back({1 - 2.0 * i / m, 1});
+  for (int i = 0; i < n; ++i) edge.push_back({-1, 1 - 2.0 * i / n});
+  for (int i = 0; i < m; ++i) edge.push_back({2.0 * i / m - 1, -1});
   return edge;
 }
 
 void DiscMaker::nucleus(DiscReport& report) {
   PieceBuilder builder(bones_);
-  const int m = grid_.across;
+  const int m = grid_.deep, n = grid_.wide;
   std::map<std::pair<int, int>, Column> columns;
   for (int i = 0; i <= m; ++i)
-    for (int j = 0; j <= m; ++j) {
-      const auto place = nucleus_place(space_, 2.0 * i / m - 1, 2.0 * j / m - 1);
+    for (int j = 0; j <= n; ++j) {
+      const auto place = nucleus_place(space_, 2.0 * i / m - 1, 2.0 * j / n - 1);
       for (const Point& p : points(place[0], place[1])) columns[{i, j}].push_back(builder.own(p));
     }
   for (int i = 0; i < m; ++i)
-    for (int j = 0; j < m; ++j)
+    for (int j = 0; j < n; ++j)
       for (std::size_t k = 0; k < std::size_t(grid_.layers); ++k) {
         const Column &a = columns[{i, j}], &b = columns[{i + 1, j}], &c = columns[{i + 1, j + 1}],
                      &d = columns[{i, j + 1}];
@@ -143,7 +164,7 @@ void DiscMaker::nucleus(DiscReport& report) {
   last_columns_.clear();
   for (const auto& [a, b] : rim())
     last_columns_.push_back(
-        columns[{int(std::lround((a + 1) * m / 2)), int(std::lround((b + 1) * m / 2))}]);
+        columns[{int(std::lround((a + 1) * m / 2)), int(std::lround((b + 1) * n / 2))}]);
   last_piece_ = int(between_.pieces.size());
   for (auto& [key, column] : columns) {
     bottom_.push_back(piece_node(builder.piece, last_piece_, column.front()));
@@ -189,17 +210,18 @@ void DiscMaker::ring(int number, DiscReport& report) {
 }
 
 // Each brick of a ring has two families of fibres, of half its share each: from a corner of its
-// outer face to the node of that face of the ring, up or down, whose direction is nearest to
-// theirs.
+// outer face below to the node of the ring one level up whose direction is nearest to theirs. So
+// fibres pass through nodes of every level, as lamellae follow the bulge of a pressed disc; chords
+// from endplate to endplate would leave what lies between them free to bulge.
 //   k = E A / L,   A L = fibre_share V / 2
 void DiscMaker::fibres(int number) {
   PieceBuilder builder(bones_);
   const int ring_piece = ring_pieces_[std::size_t(number - 1)];
   const auto& columns = ring_columns_[std::size_t(number - 1)];
   const Piece& ring = between_.pieces[std::size_t(ring_piece)];
-  const double t = grid_.rings == 1 ? 1 : double(number - 1) / (grid_.rings - 1);
+  const double t = way_out(number, grid_.rings);
   const double E = (1 - t) * fibre_inner + t * fibre_outer;
-  const double wanted = ((1 - t) * angle_inner + t * angle_outer) * M_PI / 180;
+  const double wanted = fibre_angle(number, grid_.rings) * M_PI / 180;
   const int n = int(columns.size()), layers = grid_.layers;
   std::map<std::pair<int, int>, double> stiffness;
   for (std::size_t e = 0; e < ring.bricks.size(); ++e) {
@@ -207,21 +229,19 @@ void DiscMaker::fibres(int number) {
     for (std::size_t i = 0; i < 8; ++i) corners[i] = ring.nodes[std::size_t(ring.bricks[e][i])].x;
     const double scale = E * fibre_share * volume_of(corners) / 2;
     const int column = int(e) / layers, layer = int(e) % layers;
-    const bool up = 2 * layer < layers;  // the longer way
     for (const int around : {1, -1}) {
       const int from_column = around > 0 ? column : (column + 1) % n;
-      const int from = columns[std::size_t(from_column)][std::size_t(up ? layer : layer + 1)];
+      const int from = columns[std::size_t(from_column)][std::size_t(layer)];
       FibreEnd best;
-      for (int q = 1; q <= std::max(1, int(std::lround(farthest_around * n))); ++q)
-        for (int p = 1; p <= (up ? layers - layer : layer + 1); ++p) {
-          const auto& there = columns[std::size_t((from_column + around * q + n) % n)];
-          const int to = there[std::size_t(up ? layer + p : layer + 1 - p)];
-          const Point d = ring.nodes[std::size_t(to)].x - ring.nodes[std::size_t(from)].x;
-          const double length = norm(d);
-          const double angle = std::asin(std::abs(dot(d, space_.frame().normal)) / length);
-          if (best.node < 0 || std::abs(angle - wanted) < best.miss)
-            best = {to, length, std::abs(angle - wanted)};
-        }
+      for (int q = 1; q <= std::max(1, int(std::lround(farthest_around * n))); ++q) {
+        const int to =
+            columns[std::size_t((from_column + around * q + n) % n)][std::size_t(layer + 1)];
+        const Point d = ring.nodes[std::size_t(to)].x - ring.nodes[std::size_t(from)].x;
+        const double length = norm(d);
+        const double angle = std::asin(std::abs(dot(d, space_.frame().normal)) / length);
+        if (best.node < 0 || std::abs(angle - wanted) < best.miss)
+          best = {to, length, std::abs(angle - wanted)};
+      }
       stiffness[std::minmax(from, best.node)] += scale / (best.length * best.length);
     }
   }

@@ -9,8 +9,9 @@
 // misses an endplate. Along each ray the disc spans from endplate to endplate, but its mean height
 // is at most that of the table: coarse bones have rounded rims, where it ends before them. Nucleus:
 // an O-grid over rho <= 0.65 (42 % of the area; 40-45 % in the table); annulus: rings of bricks
-// around it, each with two families of tension-only fibres between nodes of its outer face, at 30
-// (rim) to 45 degrees to the disc's plane, with a toe (VIVA+ 0.2.5). The nodes of the faces are
+// around it, each with two families of tension-only fibres between nodes of its outer face, from
+// level to level, at 30 (rim) to 45 degrees to the disc's plane, with a toe (VIVA+ 0.2.5). As many
+// columns are around as give the diagonals of those faces these angles. The nodes of the faces are
 // tied to the vertebrae.
 #include "body/piece.h"
 

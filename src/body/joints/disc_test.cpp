@@ -68,6 +68,26 @@ TEST_CASE("the fibres of a disc have their volume, modulus and direction") {
   }
 }
 
+// Between the endplates every node of a ring's outer face is the end of four fibres or more, so
+// that none bulges freely where the disc is pressed.
+TEST_CASE("the fibres of a disc hold its bulge") {
+  const Body body = lumbar_pair();
+  for (const std::string number : {"1", "2"}) {
+    const Piece& annulus = piece(body, "abdomen.mid.disc_L3_L4.annulus" + number);
+    const Piece& fibres = piece(body, "abdomen.mid.disc_L3_L4.fibres" + number);
+    std::vector<Point> middle;  // two bricks high: of the lower one above, outside
+    for (std::size_t e = 0; e < annulus.bricks.size(); e += 2)
+      middle.push_back(annulus.nodes[std::size_t(annulus.bricks[e][5])].x);
+    REQUIRE(middle.size() > 8);
+    for (const Point& p : middle) {
+      int ends = 0;
+      for (const auto& line : fibres.lines)
+        for (const int end : line) ends += norm(fibres.nodes[std::size_t(end)].x - p) < 1e-9;
+      CHECK(ends >= 4);
+    }
+  }
+}
+
 // Behind the toe the slope is that of the modulus; at its end, 4.1 % of the mean length outside,
 // the force is the slope times the toe over 2.5.
 TEST_CASE("the fibres of a disc have a toe") {
