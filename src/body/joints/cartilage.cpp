@@ -189,6 +189,7 @@ std::vector<std::array<PieceNode, 4>> ArticulationMaker::layer(const Articulatio
     gap = std::min(gap, distances.at(node) - 2 * thickness);
     top[node] = here.nodes[std::size_t(node)] + thickness * plan.normal.at(node);
   }
+  std::vector<int> covered;
   for (int q : patch.quads) {
     const auto& s = here.mesh.surface[std::size_t(q)];
     if (std::any_of(s.begin(), s.end(), [&](int n) { return !top.count(n); })) continue;
@@ -197,6 +198,11 @@ std::vector<std::array<PieceNode, 4>> ArticulationMaker::layer(const Articulatio
       corners[i] = here.nodes[std::size_t(s[i])], corners[i + 4] = top[s[i]];
     if (scaled_jacobian(corners) < least_jacobian)
       continue;  // folds at a sharp rim: the bone stays bare
+    covered.push_back(q);
+  }
+  if (joint.kind != ArticulationKind::facet) leave_out_tiles(here.mesh.surface, covered);
+  for (int q : covered) {
+    const auto& s = here.mesh.surface[std::size_t(q)];
     std::array<int, 8> brick;
     for (std::size_t i = 0; i < 4; ++i) {
       if (!top_node.count(s[i])) top_node[s[i]] = builder.own(top[s[i]]);

@@ -72,4 +72,21 @@ void fill_room(const std::vector<Point>& nodes, const std::vector<std::array<int
   for (auto& [node, thickness] : plan.thickness) thickness += raise.at(node);
 }
 
+void leave_out_tiles(const std::vector<std::array<int, 4>>& surface, std::vector<int>& quads) {
+  std::map<std::pair<int, int>, int> faces;  // of an edge
+  const auto edge = [&](int q, std::size_t i) {
+    const auto& s = surface[std::size_t(q)];
+    return std::pair<int, int>(std::minmax(s[i], s[(i + 1) % 4]));
+  };
+  for (int q : quads)
+    for (std::size_t i = 0; i < 4; ++i) ++faces[edge(q, i)];
+  std::vector<int> joined;
+  for (int q : quads) {
+    bool alone = true;
+    for (std::size_t i = 0; i < 4; ++i) alone = alone && faces.at(edge(q, i)) == 1;
+    if (!alone) joined.push_back(q);
+  }
+  if (2 * joined.size() > quads.size()) quads = std::move(joined);
+}
+
 }  // namespace fabrica::body

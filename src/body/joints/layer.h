@@ -28,4 +28,8 @@ void fill_room(const std::vector<Point>& nodes, const std::vector<std::array<int
                const std::vector<int>& quads, const BoneSurface& other, double gap, double thickest,
                LayerPlan& plan);
 
+// Takes out the faces that share no edge with another where most of the others hang together: what
+// slides over the rest of such a layer would tear a brick that stands alone off its side.
+void leave_out_tiles(const std::vector<std::array<int, 4>>& surface, std::vector<int>& quads);
+
 }  // namespace fabrica::body

@@ -68,3 +68,15 @@ TEST_CASE("a layer leaves room for what the other bone has between its nodes") {
   CHECK(middle == Approx(0.7));
   CHECK(middle + knob <= 1.5 - 0.1 + 1e-9);
 }
+
+// faces of a row of squares: 0 and 1 share an edge with each other, 3 and 4 too, 6 stands alone
+TEST_CASE("a face that stands alone beside a layer is left out of it") {
+  std::vector<std::array<int, 4>> surface;
+  for (int i = 0; i < 8; ++i) surface.push_back({2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1});
+  std::vector<int> quads{0, 1, 3, 4, 6};
+  leave_out_tiles(surface, quads);
+  CHECK(quads == std::vector<int>{0, 1, 3, 4});
+  quads = {0, 2, 4, 5};  // as many alone as together: no layer to be beside
+  leave_out_tiles(surface, quads);
+  CHECK(quads == std::vector<int>{0, 2, 4, 5});
+}
