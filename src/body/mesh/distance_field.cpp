@@ -217,11 +217,11 @@ DistanceField DistanceField::of_slices(const std::vector<Slice>& slices, const A
       continue;
     }
     while (slices[above].height < z) ++above;
-    const float apart = float(slices[above].height - slices[above - 1].height);
+    const double apart = slices[above].height - slices[above - 1].height;
     const double t = (z - slices[above - 1].height) / apart;
     const auto &a = distance[above - 1], &b = distance[above];
     for (int i = 0; i < plane; ++i) {
-      const float most = halfway && (a[i] < 0) != (b[i] < 0) ? apart : 1e9f;
+      const float most = halfway && (a[i] < 0) != (b[i] < 0) ? float(apart) : 1e9f;
       out[i] = float((1 - t) * std::clamp(a[i], -most, most) + t * std::clamp(b[i], -most, most));
     }
   }
