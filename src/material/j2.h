@@ -99,6 +99,26 @@ FABRICA_FN L j2_bracket(const J2Modes<L>& modes, const L& q_trial, const L& stat
   return select(q_trial > static_yield, bound * second * second, L(0.0)) * L(1 / modes.cb);
 }
 
+// Laws without kinematic hardening: no back stress.
+template <class L>
+FABRICA_FN Sym3<L> j2_no_back() {
+  return {L(0.0), L(0.0), L(0.0), L(0.0), L(0.0), L(0.0)};
+}
+
+// Whether points fail at a plastic strain; decks write 1e20 or 1e21 where nothing is to fail.
+FABRICA_FN bool j2_may_fail(Real failure_strain) {
+  return failure_strain > 0 && failure_strain < Real(1e20);
+}
+
+// Adds an increment to the plastic strain; the point fails beyond the failure strain, 0: never.
+template <class L>
+FABRICA_FN void j2_take_up(const L& increment, Real failure_strain, Point<L>& point,
+                           L& plastic_strain) {
+  plastic_strain += increment;
+  if (failure_strain > 0)
+    point.alive = select(plastic_strain > L(failure_strain), L(0.0), point.alive);
+}
+
 // Strain increments completed for the rate measure: yield matters where the material flows, and
 // flow keeps volume.
 template <class L>

@@ -39,17 +39,16 @@ struct PiecewiseLinearPlasticity {
 
   static PiecewiseLinearPlasticity from(const Parameters& p);
   Elastic elastic() const { return {density, moduli.bulk, moduli.shear}; }
-  // decks write 1e20 or 1e21 where nothing is to fail
-  bool may_fail() const { return failure_strain > 0 && failure_strain < Real(1e20); }
+  bool may_fail() const { return j2_may_fail(failure_strain); }
 
   template <class L>
   FABRICA_FN Sym3<L> stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point,
                             State<L>& state) const {
-    const J2Trial<L> trial = j2_trial(moduli, old, strain, no_back<L>());
+    const J2Trial<L> trial = j2_trial(moduli, old, strain, j2_no_back<L>());
     const L lambda = flow<false>(trial, strain, point, state);
     L increment;
     const Sym3<L> s = j2_finish(moduli, trial, lambda, static_cast<Sym3<L>*>(nullptr), increment);
-    finish_point(increment, point, state);
+    j2_take_up(increment, failure_strain, point, state.plastic_strain);
     return s;
   }
 
@@ -57,32 +56,28 @@ struct PiecewiseLinearPlasticity {
   FABRICA_FN Sym3<L> plane_stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point,
                                   State<L>& state, L& dzz) const {
     const J2Trial<L> trial =
-        j2_plane_trial<TransverseShear::flows>(moduli, old, strain, no_back<L>());
+        j2_plane_trial<TransverseShear::flows>(moduli, old, strain, j2_no_back<L>());
     const L lambda = flow<true>(trial, plane_flow_strain(strain), point, state);
     L increment;
     const Sym3<L> s =
         j2_plane_finish(moduli, old, trial, lambda, static_cast<Sym3<L>*>(nullptr), increment, dzz);
-    finish_point(increment, point, state);
+    j2_take_up(increment, failure_strain, point, state.plastic_strain);
     return s;
   }
 
   template <class L>
   FABRICA_FN Sym3<L> uniaxial(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point,
                               State<L>& state) const {
-    const J2Trial<L> trial = j2_fibre_trial(moduli, old, strain, no_back<L>());
+    const J2Trial<L> trial = j2_fibre_trial(moduli, old, strain, j2_no_back<L>());
     const L lambda = flow<true>(trial, fibre_flow_strain(strain), point, state);
     L increment;
     const Sym3<L> s =
         j2_fibre_finish(moduli, trial, lambda, static_cast<Sym3<L>*>(nullptr), increment);
-    finish_point(increment, point, state);
+    j2_take_up(increment, failure_strain, point, state.plastic_strain);
     return s;
   }
 
  private:
-  template <class L>
-  FABRICA_FN static Sym3<L> no_back() {
-    return {L(0.0), L(0.0), L(0.0), L(0.0), L(0.0), L(0.0)};
-  }
   FABRICA_FN bool rate_dependent() const {
     return rate_constant > 0 || bool(rate_curve) || bool(table);
   }
@@ -157,12 +152,6 @@ struct PiecewiseLinearPlasticity {
       const L dep = excess / (scale + H);
       return L(1.5) * dep / max(trial.q - scale * dep, L(1e-30));
     }
-  }
-  template <class L>
-  FABRICA_FN void finish_point(const L& increment, Point<L>& point, State<L>& state) const {
-    state.plastic_strain += increment;
-    if (failure_strain > 0)
-      point.alive = select(state.plastic_strain > L(failure_strain), L(0.0), point.alive);
   }
 };
 

@@ -48,8 +48,7 @@ struct PlasticKinematic {
             p.integer("vp") == 1};
   }
   Elastic elastic() const { return {density, moduli.bulk, moduli.shear}; }
-  // decks write 1e20 or 1e21 where nothing is to fail
-  bool may_fail() const { return failure_strain > 0 && failure_strain < Real(1e20); }
+  bool may_fail() const { return j2_may_fail(failure_strain); }
 
   template <class L>
   FABRICA_FN Sym3<L> stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point,
@@ -58,7 +57,7 @@ struct PlasticKinematic {
     const L lambda = flow<false>(trial, strain, point, state);
     L increment;
     const Sym3<L> s = j2_finish(moduli, trial, lambda, &state.back, increment);
-    finish_point(increment, point, state);
+    j2_take_up(increment, failure_strain, point, state.plastic_strain);
     return s;
   }
 
@@ -72,7 +71,7 @@ struct PlasticKinematic {
     const L lambda = flow<true>(trial, flowing, point, state);
     L increment;
     const Sym3<L> s = j2_plane_finish(moduli, old, trial, lambda, &state.back, increment, dzz);
-    finish_point(increment, point, state);
+    j2_take_up(increment, failure_strain, point, state.plastic_strain);
     return s;
   }
 
@@ -83,7 +82,7 @@ struct PlasticKinematic {
     const L lambda = flow<true>(trial, fibre_flow_strain(strain), point, state);
     L increment;
     const Sym3<L> s = j2_fibre_finish(moduli, trial, lambda, &state.back, increment);
-    finish_point(increment, point, state);
+    j2_take_up(increment, failure_strain, point, state.plastic_strain);
     return s;
   }
 
@@ -121,12 +120,6 @@ struct PlasticKinematic {
     return j2_bracket<plane, 10>(trial.modes, trial.q, Y, [&](const L& dep, L&) {
       return Y + L(isotropic) * dep + L(yield_stress) * pow(dep * scale, L(rate_exponent));
     });
-  }
-  template <class L>
-  FABRICA_FN void finish_point(const L& increment, Point<L>& point, State<L>& state) const {
-    state.plastic_strain += increment;
-    if (failure_strain > 0)
-      point.alive = select(state.plastic_strain > L(failure_strain), L(0.0), point.alive);
   }
 };
 

@@ -57,20 +57,19 @@ struct PlasticityCompressionTensionOf {
   static PlasticityCompressionTensionOf from(const Parameters& p);
   // of what does not relax
   Elastic elastic() const { return {density, moduli.bulk, moduli.shear}; }
-  // decks write 1e20 or 1e21 where nothing is to fail
-  bool may_fail() const { return failure_strain > 0 && failure_strain < Real(1e20); }
+  bool may_fail() const { return j2_may_fail(failure_strain); }
 
   template <class L>
   FABRICA_FN Sym3<L> stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point,
                             State<L>& state) const {
-    Sym3<L> before = none<L>(), after = none<L>();
+    Sym3<L> before = j2_no_back<L>(), after = j2_no_back<L>();
     if constexpr (viscous) relax(strain, point, state, before, after);
-    const J2Trial<L> trial = j2_trial(moduli, old - before, strain, none<L>());
+    const J2Trial<L> trial = j2_trial(moduli, old - before, strain, j2_no_back<L>());
     const L lambda = flow<false>(trial, strain, point, state);
     stiffen(lambda, point, state);
     L increment;
     const Sym3<L> s = j2_finish(moduli, trial, lambda, static_cast<Sym3<L>*>(nullptr), increment);
-    finish_point(increment, point, state);
+    j2_take_up(increment, failure_strain, point, state.plastic_strain);
     return s + after;
   }
 
@@ -79,21 +78,17 @@ struct PlasticityCompressionTensionOf {
   requires(!viscous) FABRICA_FN Sym3<L> plane_stress(const Sym3<L>& old, const Sym3<L>& strain,
                                                      Point<L>& point, State<L>& state, L& dzz)
   const {
-    const J2Trial<L> trial = j2_plane_trial<TransverseShear::flows>(moduli, old, strain, none<L>());
+    const J2Trial<L> trial =
+        j2_plane_trial<TransverseShear::flows>(moduli, old, strain, j2_no_back<L>());
     const L lambda = flow<true>(trial, plane_flow_strain(strain), point, state);
     L increment;
     const Sym3<L> s =
         j2_plane_finish(moduli, old, trial, lambda, static_cast<Sym3<L>*>(nullptr), increment, dzz);
-    finish_point(increment, point, state);
+    j2_take_up(increment, failure_strain, point, state.plastic_strain);
     return s;
   }
 
  private:
-  template <class L>
-  FABRICA_FN static Sym3<L> none() {
-    return {L(0.0), L(0.0), L(0.0), L(0.0), L(0.0), L(0.0)};
-  }
-
   // equation (3): the sum of the branches before and after the step
   template <class L>
   FABRICA_FN void relax(const Sym3<L>& strain, Point<L>& point, State<L>& state, Sym3<L>& before,
@@ -176,12 +171,6 @@ struct PlasticityCompressionTensionOf {
     const L ft = rate_factor(tension_rate, r), fc = rate_factor(compression_rate, r);
     return j2_newton<plane, 4>(
         trial.modes, [&](const L& dep, L& slope) { return yield(w, ep + dep, ft, fc, slope); });
-  }
-  template <class L>
-  FABRICA_FN void finish_point(const L& increment, Point<L>& point, State<L>& state) const {
-    state.plastic_strain += increment;
-    if (failure_strain > 0)
-      point.alive = select(state.plastic_strain > L(failure_strain), L(0.0), point.alive);
   }
 };
 
