@@ -3,8 +3,6 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <sstream>
 
 #include "body/mesh/quality.h"
 
@@ -32,7 +30,6 @@ struct Made {
 // A wave crosses a shell, area / longest side, with c = sqrt(E / (rho (1 - nu^2))). 0.8 us is asked
 // at coarse; bones that are rigid there have no shells.
 TEST_CASE("at coarse no shell of a bone asks for a step below 0.8 us") {
-  Diagnostics diagnostics;
   for (const std::string& bone : bone_names()) {
     const BoneMaterial rows = bone_material(bone);
     if (rows.rigid_at_coarse) continue;

@@ -155,6 +155,8 @@ class Mounting {
         cards_(assembled, builder) {}
 
   std::vector<MountedPart> run() {
+    if (std::any_of(rig_.pots.begin(), rig_.pots.end(), [](auto& p) { return p.foundation > 0; }))
+      axes();
     for (const RigPot& pot : rig_.pots) {
       const RigCards::Curves curves = cards_.curves(pot.name, pot.support);
       for (const BoneName& bone : pot.bones) add(pot, bone, curves);
@@ -183,7 +185,6 @@ class Mounting {
       for (const int n : brick) volume[std::size_t(n)] += share;
     }
     RigidMass mass{0, pivot, {}};
-    if (pot.foundation > 0) volume.assign(volume.size(), 0);  // the bone is not of the body
     for (const int n : held)
       mass.add(bone_density * volume[std::size_t(n)], bone.nodes[std::size_t(n)]);
     mass.mass += pot.mass;
@@ -201,23 +202,36 @@ class Mounting {
     const std::string title = name.text + " " + pot.name;
     const std::int64_t node_set = cards_.set("SET_NODE_LIST", title, nodes);
     const Point pivot = pivot_of(pot, bone);
+    // a foundation keeps the bone apart from the rigid part
+    const std::vector<int>& rigid = pot.foundation > 0 ? none_ : held;
     const std::int64_t id = cards_.rigid_part(title, brick_density, pot.support, curves,
-                                              mass_of(pot, bone, held, pivot));
+                                              mass_of(pot, bone, rigid, pivot));
     // a brick of 2 mm at the pivot: the rigid part that the nodes of the pot join
     add_shape(box_mesh({2, 2, 2}, 2), id, id, {identity3<double>(), pivot}, assembled_, builder_);
-    const std::int64_t joined =
-        pot.foundation > 0 ? resin(pot, title, id, bone, held, nodes) : node_set;
+    const std::int64_t joined = pot.foundation > 0 ? resin(pot, title, id, b, held) : node_set;
     builder_.add_card("CONSTRAINED_EXTRA_NODES_SET").add_row({double(id), double(joined), 0});
     section(id, node_set, title, held, b);
     mounted_.push_back({id, title, pivot});
+  }
+
+  // orientations of springs along x, y and z
+  void axes() {
+    int id = first_axis;
+    for (const Point& axis : {Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}})
+      builder_.add_card("DEFINE_SD_ORIENTATION")
+          .set("vid", double(id++))
+          .set("iop", 0)
+          .set("xt", axis.x)
+          .set("yt", axis.y)
+          .set("zt", axis.z);
   }
 
   // Springs between the surface of the bone in a pot and nodes of the cup at the same places, along
   // x, y and z: a foundation K per length on the area A of a depth d is K d / A per area. Returns
   // the set of the nodes of the cup.
   std::int64_t resin(const RigPot& pot, const std::string& title, std::int64_t pot_id,
-                     const PlacedBone& bone, const std::vector<int>& held,
-                     const std::vector<std::int64_t>& nodes) {
+                     std::size_t b, const std::vector<int>& held) {
+    const PlacedBone& bone = body_.bones[b];
     std::map<int, double> area;  // node of the bone
     for (const auto& quad : bone.mesh.surface) {
       const auto in_pot = [&](int n) { return std::binary_search(held.begin(), held.end(), n); };
@@ -237,23 +251,15 @@ class Mounting {
     Card& part = builder_.add_card("PART");
     part.title = "rig." + title + " resin";
     part.set("pid", id).set("secid", id).set("mid", id);
-    if (axes_ == 0)
-      for (const Point& axis : {Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}})
-        builder_.add_card("DEFINE_SD_ORIENTATION")
-            .set("vid", double(first_axis + axes_++))
-            .set("iop", 0)
-            .set("xt", axis.x)
-            .set("yt", axis.y)
-            .set("zt", axis.z);
     std::vector<std::int64_t> cup;
     for (const auto& [n, size] : area) {
       const std::int64_t own = assembled_.next_node++;
       builder_.add_node(own, to_field(bone.nodes[std::size_t(n)]));
       cup.push_back(own);
-      const auto at = std::lower_bound(held.begin(), held.end(), n) - held.begin();
       for (int axis = 0; axis < 3; ++axis)
-        builder_.add_discrete(assembled_.next_element++, std::int64_t(id), nodes[std::size_t(at)],
-                              own, first_axis + axis, size / sum, 0);
+        builder_.add_discrete(assembled_.next_element++, std::int64_t(id),
+                              assembled_.bone_node[b][std::size_t(n)], own, first_axis + axis,
+                              size / sum, 0);
     }
     return cards_.set("SET_NODE_LIST", title + " cup", cup);
   }
@@ -290,7 +296,7 @@ class Mounting {
   Builder& builder_;
   RigCards cards_;
   std::vector<MountedPart> mounted_;
-  int axes_ = 0;  // orientations made
+  const std::vector<int> none_;
 };
 
 }  // namespace

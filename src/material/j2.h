@@ -255,4 +255,29 @@ FABRICA_FN Sym3<L> j2_plane_finish(const J2Moduli& m, const Sym3<L>& old, const 
   return stress;
 }
 
+// The step of a law without back stress: trial, the flow lambda that flow(trial) gives, its stress.
+// Failure as j2_take_up.
+template <class L, class Flow>
+FABRICA_FN Sym3<L> j2_isotropic(const J2Moduli& m, const Sym3<L>& old, const Sym3<L>& strain,
+                                Real failure_strain, Point<L>& point, L& plastic_strain,
+                                const Flow& flow) {
+  const J2Trial<L> trial = j2_trial(m, old, strain, j2_no_back<L>());
+  L increment;
+  const Sym3<L> s = j2_finish(m, trial, flow(trial), static_cast<Sym3<L>*>(nullptr), increment);
+  j2_take_up(increment, failure_strain, point, plastic_strain);
+  return s;
+}
+// The same in plane stress, transverse shear flows with the rest.
+template <class L, class Flow>
+FABRICA_FN Sym3<L> j2_isotropic_plane(const J2Moduli& m, const Sym3<L>& old, const Sym3<L>& strain,
+                                      Real failure_strain, Point<L>& point, L& plastic_strain,
+                                      L& dzz, const Flow& flow) {
+  const J2Trial<L> trial = j2_plane_trial<TransverseShear::flows>(m, old, strain, j2_no_back<L>());
+  L increment;
+  const Sym3<L> s =
+      j2_plane_finish(m, old, trial, flow(trial), static_cast<Sym3<L>*>(nullptr), increment, dzz);
+  j2_take_up(increment, failure_strain, point, plastic_strain);
+  return s;
+}
+
 }  // namespace fabrica

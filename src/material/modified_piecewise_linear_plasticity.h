@@ -3,8 +3,8 @@
 // number of layers (*MAT_MODIFIED_PIECEWISE_LINEAR_PLASTICITY, 123).
 //   a layer fails where ep > FAIL, or where the greater principal strain in its plane
 //   (e_xx + e_yy)/2 + sqrt((e_xx - e_yy)^2/4 + e_xy^2) > EPSMAJ                              (1)
-//   e: strain increments summed in the axes of the shell; an in-plane point fails with NUMINT
-//   layers
+//   e: strain increments summed in the axes of the shell
+// An in-plane point fails with NUMINT layers.
 // Solids: 024. Source: LS-DYNA manual (public), MAT_123.
 #include <stdexcept>
 #include <string>

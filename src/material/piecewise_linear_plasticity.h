@@ -44,25 +44,18 @@ struct PiecewiseLinearPlasticity {
   template <class L>
   FABRICA_FN Sym3<L> stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point,
                             State<L>& state) const {
-    const J2Trial<L> trial = j2_trial(moduli, old, strain, j2_no_back<L>());
-    const L lambda = flow<false>(trial, strain, point, state);
-    L increment;
-    const Sym3<L> s = j2_finish(moduli, trial, lambda, static_cast<Sym3<L>*>(nullptr), increment);
-    j2_take_up(increment, failure_strain, point, state.plastic_strain);
-    return s;
+    return j2_isotropic(
+        moduli, old, strain, failure_strain, point, state.plastic_strain,
+        [&](const J2Trial<L>& trial) { return flow<false>(trial, strain, point, state); });
   }
 
   template <class L>
   FABRICA_FN Sym3<L> plane_stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>& point,
                                   State<L>& state, L& dzz) const {
-    const J2Trial<L> trial =
-        j2_plane_trial<TransverseShear::flows>(moduli, old, strain, j2_no_back<L>());
-    const L lambda = flow<true>(trial, plane_flow_strain(strain), point, state);
-    L increment;
-    const Sym3<L> s =
-        j2_plane_finish(moduli, old, trial, lambda, static_cast<Sym3<L>*>(nullptr), increment, dzz);
-    j2_take_up(increment, failure_strain, point, state.plastic_strain);
-    return s;
+    return j2_isotropic_plane(moduli, old, strain, failure_strain, point, state.plastic_strain, dzz,
+                              [&](const J2Trial<L>& trial) {
+                                return flow<true>(trial, plane_flow_strain(strain), point, state);
+                              });
   }
 
   template <class L>

@@ -64,12 +64,12 @@ struct PlasticityCompressionTensionOf {
                             State<L>& state) const {
     Sym3<L> before = j2_no_back<L>(), after = j2_no_back<L>();
     if constexpr (viscous) relax(strain, point, state, before, after);
-    const J2Trial<L> trial = j2_trial(moduli, old - before, strain, j2_no_back<L>());
-    const L lambda = flow<false>(trial, strain, point, state);
-    stiffen(lambda, point, state);
-    L increment;
-    const Sym3<L> s = j2_finish(moduli, trial, lambda, static_cast<Sym3<L>*>(nullptr), increment);
-    j2_take_up(increment, failure_strain, point, state.plastic_strain);
+    const Sym3<L> s = j2_isotropic(moduli, Sym3<L>(old - before), strain, failure_strain, point,
+                                   state.plastic_strain, [&](const J2Trial<L>& trial) {
+                                     const L lambda = flow<false>(trial, strain, point, state);
+                                     stiffen(lambda, point, state);
+                                     return lambda;
+                                   });
     return s + after;
   }
 
@@ -78,14 +78,10 @@ struct PlasticityCompressionTensionOf {
   requires(!viscous) FABRICA_FN Sym3<L> plane_stress(const Sym3<L>& old, const Sym3<L>& strain,
                                                      Point<L>& point, State<L>& state, L& dzz)
   const {
-    const J2Trial<L> trial =
-        j2_plane_trial<TransverseShear::flows>(moduli, old, strain, j2_no_back<L>());
-    const L lambda = flow<true>(trial, plane_flow_strain(strain), point, state);
-    L increment;
-    const Sym3<L> s =
-        j2_plane_finish(moduli, old, trial, lambda, static_cast<Sym3<L>*>(nullptr), increment, dzz);
-    j2_take_up(increment, failure_strain, point, state.plastic_strain);
-    return s;
+    return j2_isotropic_plane(moduli, old, strain, failure_strain, point, state.plastic_strain, dzz,
+                              [&](const J2Trial<L>& trial) {
+                                return flow<true>(trial, plane_flow_strain(strain), point, state);
+                              });
   }
 
  private:

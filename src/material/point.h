@@ -16,9 +16,8 @@
 //                                        at the start; the first `rotated` Sym3 members turn with
 //                                        the material and are rotated by the element before the
 //                                        call
-//   int layers_to_fail() const           optional, of laws of shells: how many layers of an
-//   in-plane
-//                                        point take the others along; 0: each fails alone
+//   int layers_to_fail() const           optional, of shells: how many layers of an in-plane point
+//                                        take the others along; 0: each fails alone
 // and one of
 //   Sym3<L> stress(const Sym3<L>& old, const Sym3<L>& strain, Point<L>&, State<L>&) const
 //       a rate law. old: Cauchy stress at t(n-1), already rotated to t(n); strain: D dt (tensor
